@@ -1,0 +1,7 @@
+//! From triangles to an arena.
+
+mod options;
+
+pub use options::{
+    BuildError, BuildOptions, HybridParams, OctreeParams, RecursiveParams, Structure, UniformParams,
+};

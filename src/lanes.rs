@@ -1,6 +1,138 @@
-//! SIMD lanes: the only file that names the crate with the run-time dispatch.
+//! SIMD lanes: the only file that names the SIMD crates' backends.
+//!
+//! A kernel is written once against [`Lanes`] and runs on eight lanes of every instruction set.
+//! `dispatch` picks the set at run time, once a query or batch; [`Portable`] is the same trait over
+//! `wide`, whose instruction set is fixed at compile time.
+//!
+//! Lanes are used where an error bound is known, never for final answers, so that it does not matter
+//! whether an instruction set fuses a multiplication with an addition.
 
-use fearless_simd::Level;
+use std::ops::{Add, BitAnd, BitOr, Mul, Sub};
+
+use fearless_simd::{Level, Simd, SimdBase, SimdFloat, SimdMask, f32x8, mask32x8};
+
+/// Lanes in one operation.
+pub(crate) const WIDTH: usize = 8;
+
+/// Eight f32 lanes: the operations that the kernels need, and no more.
+pub(crate) trait Lanes: Copy {
+    /// Eight values.
+    type F32: Copy + Add<Output = Self::F32> + Sub<Output = Self::F32> + Mul<Output = Self::F32>;
+    /// Eight truth values.
+    type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
+
+    /// The same value in all lanes.
+    fn splat(self, x: f32) -> Self::F32;
+    /// A value a lane.
+    fn load(self, x: &[f32; WIDTH]) -> Self::F32;
+    /// The absolute values.
+    fn abs(self, x: Self::F32) -> Self::F32;
+    /// 1 or -1 with the sign of each value.
+    fn sign(self, x: Self::F32) -> Self::F32;
+    /// The lesser values; unspecified where one is NaN.
+    fn min(self, a: Self::F32, b: Self::F32) -> Self::F32;
+    /// The greater values; unspecified where one is NaN.
+    fn max(self, a: Self::F32, b: Self::F32) -> Self::F32;
+    /// Where a < b; false where one is NaN.
+    fn less(self, a: Self::F32, b: Self::F32) -> Self::Mask;
+    /// The mask as bits, lane 0 lowest.
+    fn bits(self, mask: Self::Mask) -> u32;
+}
+
+/// Lanes of an instruction set that was found at run time.
+#[derive(Clone, Copy)]
+pub(crate) struct Dispatched<S>(pub(crate) S);
+
+impl<S: Simd> Lanes for Dispatched<S> {
+    type F32 = f32x8<S>;
+    type Mask = mask32x8<S>;
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> f32x8<S> {
+        f32x8::splat(self.0, x)
+    }
+    #[inline(always)]
+    fn load(self, x: &[f32; WIDTH]) -> f32x8<S> {
+        f32x8::from_slice(self.0, x)
+    }
+    #[inline(always)]
+    fn abs(self, x: f32x8<S>) -> f32x8<S> {
+        x.abs()
+    }
+    #[inline(always)]
+    fn sign(self, x: f32x8<S>) -> f32x8<S> {
+        self.splat(1.0).copysign(x)
+    }
+    #[inline(always)]
+    fn min(self, a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
+        a.min(b)
+    }
+    #[inline(always)]
+    fn max(self, a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
+        a.max(b)
+    }
+    #[inline(always)]
+    fn less(self, a: f32x8<S>, b: f32x8<S>) -> mask32x8<S> {
+        a.simd_lt(b)
+    }
+    #[inline(always)]
+    fn bits(self, mask: mask32x8<S>) -> u32 {
+        mask.to_bitmask() as u32
+    }
+}
+
+/// Lanes of the instruction set that the crate is compiled for.
+#[derive(Clone, Copy)]
+pub(crate) struct Portable;
+
+impl Lanes for Portable {
+    type F32 = wide::f32x8;
+    type Mask = wide::f32x8;
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> wide::f32x8 {
+        wide::f32x8::splat(x)
+    }
+    #[inline(always)]
+    fn load(self, x: &[f32; WIDTH]) -> wide::f32x8 {
+        wide::f32x8::from(*x)
+    }
+    #[inline(always)]
+    fn abs(self, x: wide::f32x8) -> wide::f32x8 {
+        x.abs()
+    }
+    #[inline(always)]
+    fn sign(self, x: wide::f32x8) -> wide::f32x8 {
+        self.splat(1.0).copysign(x)
+    }
+    #[inline(always)]
+    fn min(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
+        a.fast_min(b)
+    }
+    #[inline(always)]
+    fn max(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
+        a.fast_max(b)
+    }
+    #[inline(always)]
+    fn less(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
+        a.simd_lt(b)
+    }
+    #[inline(always)]
+    fn bits(self, mask: wide::f32x8) -> u32 {
+        mask.to_bitmask()
+    }
+}
+
+/// Runs `$body` with `$lanes` bound to the lanes of the instruction set `$isa`.
+macro_rules! dispatch {
+    ($isa:expr, $lanes:ident => $body:expr) => {
+        fearless_simd::dispatch!($isa.level(), simd => {
+            let $lanes = $crate::lanes::Dispatched(simd);
+            $body
+        })
+    };
+}
+pub(crate) use dispatch;
 
 /// An instruction set for the queries. Every one gives the same bits.
 #[derive(Clone, Copy, Debug)]
@@ -11,10 +143,54 @@ impl Isa {
     pub fn detect() -> Self {
         Self(Level::new())
     }
+
+    /// All that this processor has, the best one last.
+    pub fn available() -> Vec<Self> {
+        let level = Level::new();
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        let all = [
+            level.as_sse2().map(Level::Sse2),
+            level.as_sse4_2().map(Level::Sse4_2),
+            level.as_avx2().map(Level::Avx2),
+            level.as_avx512().map(Level::Avx512),
+        ];
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        let all = [Some(level)];
+        all.into_iter().flatten().map(Self).collect()
+    }
+
+    pub(crate) fn level(self) -> Level {
+        self.0
+    }
 }
 
 impl PartialEq for Isa {
     fn eq(&self, other: &Self) -> bool {
         std::mem::discriminant(&self.0) == std::mem::discriminant(&other.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(lanes: impl Lanes) {
+        let a = [1.0, -2.0, 3.0, f32::NAN, 0.0, -0.0, f32::INFINITY, -8.0];
+        let b = [2.0, -3.0, 3.0, 1.0, -0.0, 0.0, f32::INFINITY, -7.0];
+        let less = lanes.less(lanes.load(&a), lanes.load(&b));
+        assert_eq!(lanes.bits(less), 0b1000_0001);
+        let abs = lanes.abs(lanes.load(&a)) - lanes.splat(2.5);
+        assert_eq!(lanes.bits(lanes.less(lanes.splat(0.0), abs)), 0b1100_0100);
+        let (low, high) =
+            (lanes.min(lanes.load(&b), lanes.splat(1.0)), lanes.max(lanes.load(&b), lanes.splat(1.0)));
+        assert_eq!(lanes.bits(lanes.less(low, high)), 0b1111_0111);
+    }
+
+    #[test]
+    fn every_backend_computes_the_same() {
+        check(Portable);
+        for isa in Isa::available() {
+            dispatch!(isa, lanes => check(lanes));
+        }
     }
 }

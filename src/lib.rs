@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod build;
+mod exact;
 mod hit;
 mod lanes;
 mod mesh;
@@ -9,6 +10,7 @@ mod model;
 mod query;
 mod ray;
 mod scene;
+mod triangle;
 
 pub use build::{
     BuildError, BuildOptions, HybridParams, OctreeParams, RecursiveParams, Structure, UniformParams,

@@ -161,7 +161,7 @@ impl Query for All<'_> {
     #[inline]
     fn accept(&mut self, hit: Hit) -> ControlFlow<()> {
         let at = self.hits[..self.len].partition_point(|h| h.precedes(&hit));
-        if at < self.len && self.hits[at].prim == hit.prim {
+        if at < self.len && !hit.precedes(&self.hits[at]) {
             return ControlFlow::Continue(());
         }
         if self.len < self.hits.len() {

@@ -1,0 +1,358 @@
+//! Does a ray meet a triangle, and where: the exact answer at the price of a rounded one.
+//!
+//! With s = o - v0, e1 = v1 - v0, e2 = v2 - v0, p = e2 x d and q = e1 x s (Moeller and Trumbore 1997)
+//!
+//! ```text
+//! det = e1.p    w1 = s.p    w2 = d.q    w0 = det - w1 - w2    t = (e2.q) / det
+//! ```
+//!
+//! and the line meets the triangle iff det is not zero and no w has the other sign. Two functions:
+//!
+//! - [`candidates`] evaluates this in f32 on eight lanes, triangles or rays, and drops those that are
+//!   certainly not hit within the interval: each comparison is widened by the bound of its rounding
+//!   error. It decides nothing else.
+//! - [`intersect`] decides on one triangle: in f64, where the error bound leaves no doubt, and in exact
+//!   arithmetic otherwise. Its answer depends on the ray and the triangle alone.
+//!
+//! So no answer depends on the width of the lanes or on the order of operations, neighbouring
+//! triangles agree on the edge they share (both know on which side the ray passes), and t, being the
+//! exact value rounded, orders hits along the ray as they are.
+
+use glam::{DVec3, Vec3};
+
+use crate::exact::{self, Expansion};
+use crate::lanes::Lanes;
+use crate::query::EdgeRule;
+use crate::ray::Ray;
+
+/// Where a line meets a triangle: as in [`crate::Hit`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Intersection {
+    pub(crate) t: f32,
+    pub(crate) u: f32,
+    pub(crate) v: f32,
+}
+
+/// Where the whole line of a valid ray meets a triangle, if it does and t is finite.
+///
+/// t is correctly rounded, u and v are good to 2^-24.
+#[inline]
+pub(crate) fn intersect(ray: &Ray, corners: [Vec3; 3], rule: EdgeRule) -> Option<Intersection> {
+    match decide_rounded(ray, corners) {
+        Decision::Hit(at) => Some(at),
+        Decision::Miss => None,
+        Decision::Open => decide_exact(ray, corners, rule),
+    }
+    .filter(|at| at.t.is_finite())
+}
+
+enum Decision {
+    Hit(Intersection),
+    Miss,
+    Open,
+}
+
+/// Decides in f64 where the rounding error can't matter.
+///
+/// The bounds: let A, E1, E2, D be the largest absolute components of s, e1, e2, d. Their rounding and
+/// that of products and sums give det, w1, w2 and e2.q an error of less than 64 * 2^-53 times D E1 E2,
+/// A D E2, A D E1 and A E1 E2.
+#[inline]
+fn decide_rounded(ray: &Ray, corners: [Vec3; 3]) -> Decision {
+    const EPS: f64 = 64.0 / (1u64 << 53) as f64;
+    let [v0, v1, v2] = corners.map(Vec3::as_dvec3);
+    let (o, d) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
+    let (s, e1, e2) = (o - v0, v1 - v0, v2 - v0);
+    let (p, q) = (e2.cross(d), e1.cross(s));
+    let (det, w1, w2, numerator) = (e1.dot(p), s.dot(p), d.dot(q), e2.dot(q));
+    let size = |x: DVec3| x.abs().max_element();
+    let (a, d, e1, e2) = (EPS * size(s), size(d), size(e1), size(e2));
+    let (b1, b2, bt, bd) = (a * d * e2, a * d * e1, a * e1 * e2, EPS * d * e1 * e2);
+    let sign = 1f64.copysign(det);
+    let (w1, w2, abs) = (sign * w1, sign * w2, sign * det);
+    if abs <= bd {
+        return Decision::Open;
+    }
+    let w0 = abs - w1 - w2;
+    let b0 = 2.0 * (bd + b1 + b2);
+    if w0 < -b0 || w1 < -b1 || w2 < -b2 {
+        return Decision::Miss;
+    }
+    let inverse = 1.0 / abs;
+    let t = sign * numerator * inverse;
+    let error = t.abs() * (bd * inverse + 4.0 * f64::EPSILON) + bt * inverse;
+    let rounded = (t - error) as f32;
+    // u and v take the relative error of b0 / det.
+    const PRECISE: f64 = 1.0 / (1u64 << 26) as f64;
+    if w0 <= b0 || w1 <= b1 || w2 <= b2 || rounded != (t + error) as f32 || b0 > abs * PRECISE {
+        return Decision::Open;
+    }
+    Decision::Hit(Intersection { t: rounded + 0.0, u: (w1 * inverse) as f32, v: (w2 * inverse) as f32 })
+}
+
+/// Decides in exact arithmetic.
+#[cold]
+#[inline(never)]
+fn decide_exact(ray: &Ray, [v0, v1, v2]: [Vec3; 3], rule: EdgeRule) -> Option<Intersection> {
+    let minus = |a: Vec3, b: Vec3| -> [Expansion; 3] {
+        std::array::from_fn(|axis| Expansion::difference(f64::from(a[axis]), f64::from(b[axis])))
+    };
+    let d = minus(ray.dir, Vec3::ZERO);
+    let (s, e1, e2) = (minus(ray.origin, v0), minus(v1, v0), minus(v2, v0));
+    let p = exact::cross(&e2, &d);
+    let det = exact::dot(&e1, &p);
+    if det.sign() == 0.0 {
+        return None;
+    }
+    let q = exact::cross(&e1, &s);
+    let (w1, w2) = (exact::dot(&s, &p), exact::dot(&d, &q));
+    let w0 = det.minus(&w1).minus(&w2);
+    let edges = [(&w0, v1, v2), (&w1, v2, v0), (&w2, v0, v1)];
+    let inside = edges.into_iter().all(|(w, from, to)| {
+        let side = match (w.sign(), rule) {
+            (0.0, EdgeRule::Crossing) => perturbed_side(&d, &minus(to, from)),
+            (side, _) => side,
+        };
+        side * det.sign() >= 0.0
+    });
+    inside.then(|| {
+        let inverse = 1.0 / det.estimate();
+        Intersection {
+            t: exact::divide_to_f32(&exact::dot(&e2, &q), &det),
+            u: (w1.estimate() * inverse) as f32 + 0.0,
+            v: (w2.estimate() * inverse) as f32 + 0.0,
+        }
+    })
+}
+
+/// On which side of an edge that it meets a line passes, after its origin has moved by
+/// (e, e^2, e^3) with e -> 0.
+///
+/// For the edge from p to q the side is d.((p - o) x (q - o)) = d.(p x q) + o.(d x (q - p)), so the
+/// first component of d x (q - p) that is not zero decides. Source: H. Edelsbrunner and E. P. Muecke,
+/// "Simulation of Simplicity", 1990.
+fn perturbed_side(d: &[Expansion; 3], edge: &[Expansion; 3]) -> f64 {
+    exact::cross(d, edge).iter().map(Expansion::sign).find(|&sign| sign != 0.0).unwrap_or(0.0)
+}
+
+/// Lanes of three-component vectors.
+pub(crate) type Vec3Lanes<L> = [<L as Lanes>::F32; 3];
+
+/// A ray, or eight of them, as [`candidates`] takes it.
+///
+/// The direction is scaled by a power of two so that its largest component lies in [0.5, 1), and the
+/// interval with it.
+#[derive(Clone, Copy)]
+pub(crate) struct RayLanes<L: Lanes> {
+    pub(crate) origin: Vec3Lanes<L>,
+    pub(crate) dir: Vec3Lanes<L>,
+    pub(crate) t_min: L::F32,
+    pub(crate) t_max: L::F32,
+}
+
+impl<L: Lanes> RayLanes<L> {
+    /// One ray in all lanes.
+    #[inline(always)]
+    pub(crate) fn splat(lanes: L, ray: &Ray, scale: Scale) -> Self {
+        Self {
+            origin: ray.origin.to_array().map(|x| lanes.splat(x)),
+            dir: scale.direction(ray.dir).to_array().map(|x| lanes.splat(x)),
+            t_min: lanes.splat(scale.time(ray.t_min)),
+            t_max: lanes.splat(scale.time(ray.t_max)),
+        }
+    }
+}
+
+/// The power of two by which [`RayLanes`] scales a direction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scale {
+    factor: f64,
+}
+
+impl Scale {
+    /// The scale for a direction that is finite and not zero.
+    #[inline(always)]
+    pub(crate) fn of(dir: Vec3) -> Self {
+        let exponent = (f64::from(dir.abs().max_element()).to_bits() >> 52) as i64 - 1022;
+        Self { factor: f64::from_bits(((1023 - exponent) as u64) << 52) }
+    }
+
+    /// The scaled direction.
+    #[inline(always)]
+    pub(crate) fn direction(self, dir: Vec3) -> Vec3 {
+        (dir.as_dvec3() * self.factor).as_vec3()
+    }
+
+    /// t in units of the scaled direction; what is too large stays finite, as it was.
+    #[inline(always)]
+    pub(crate) fn time(self, t: f32) -> f32 {
+        let scaled = (f64::from(t) / self.factor) as f32;
+        if t.is_finite() { scaled.clamp(f32::MIN, f32::MAX) } else { t }
+    }
+}
+
+/// The lanes in which the ray may meet the triangle within its interval, as bits.
+///
+/// Never misses one that [`intersect`] finds there. The bounds: with A, E, D as in
+/// [`decide_rounded`], D <= 1 and 2^-24 for 2^-53, the errors of det and w are at most 48 * 2^-24 times
+/// E E and A E, so that 2^-17 E (A + E) covers the w and twice det (whose sign may be the wrong one
+/// within its error); t is compared as t * det. Adding 2^-40 to E covers what underflows; where something
+/// overflows, so does its bound, and infinite and NaN bounds exclude nothing.
+#[inline(always)]
+pub(crate) fn candidates<L: Lanes>(lanes: L, ray: &RayLanes<L>, [v0, v1, v2]: [Vec3Lanes<L>; 3]) -> u32 {
+    let size = |[x, y, z]: Vec3Lanes<L>| lanes.max(lanes.max(lanes.abs(x), lanes.abs(y)), lanes.abs(z));
+    let (s, e1, e2) = (minus::<L>(ray.origin, v0), minus::<L>(v1, v0), minus::<L>(v2, v0));
+    let (p, q) = (cross::<L>(e2, ray.dir), cross::<L>(e1, s));
+    let (det, w1, w2) = (dot::<L>(e1, p), dot::<L>(s, p), dot::<L>(ray.dir, q));
+    let zero = lanes.splat(0.0);
+    let abs = lanes.abs(det);
+    let sign = lanes.sign(det);
+    let (w1, w2) = (sign * w1, sign * w2);
+    let a = size(s);
+    let e = lanes.max(size(e1), size(e2)) + lanes.splat(2f32.powi(-40));
+    // 16 E (A + E) is above every intermediate value, so that it overflows first.
+    let (e16, eps) = (lanes.splat(16.0) * e, lanes.splat(2f32.powi(-21)));
+    let slack = eps * (e16 * (a + e));
+    let outside =
+        lanes.less(w1 + slack, zero) | lanes.less(w2 + slack, zero) | lanes.less(abs + slack, w1 + w2);
+    let numerator = sign * dot::<L>(e2, q);
+    let slack = |t: L::F32| eps * (e16 * (e * (a + lanes.abs(t)) + lanes.splat(2f32.powi(-80))));
+    let beyond = lanes.less(ray.t_max * abs + slack(ray.t_max), numerator)
+        | lanes.less(numerator + slack(ray.t_min), ray.t_min * abs);
+    let certain = lanes.less(eps * (e16 * e), abs);
+    !lanes.bits(outside | (beyond & certain)) & 0xff
+}
+
+#[inline(always)]
+fn minus<L: Lanes>(a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> Vec3Lanes<L> {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+fn cross<L: Lanes>(a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> Vec3Lanes<L> {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[inline(always)]
+fn dot<L: Lanes>(a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> L::F32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::{Isa, Portable, dispatch};
+
+    fn corners(v: [[f32; 3]; 3]) -> [Vec3; 3] {
+        v.map(Vec3::from_array)
+    }
+
+    const UNIT: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+
+    fn down(x: f32, y: f32) -> Ray {
+        Ray::new([x, y, 3.0], [0.0, 0.0, -2.0])
+    }
+
+    #[test]
+    fn inside_outside_and_both_sides() {
+        let at = intersect(&down(0.25, 0.5), corners(UNIT), EdgeRule::Closed);
+        assert_eq!(at, Some(Intersection { t: 1.5, u: 0.25, v: 0.5 }));
+        let [a, b, c] = corners(UNIT);
+        let back = intersect(&down(0.25, 0.5), [a, c, b], EdgeRule::Closed);
+        assert_eq!(back, Some(Intersection { t: 1.5, u: 0.5, v: 0.25 }));
+        assert_eq!(intersect(&down(0.6, 0.5), [a, b, c], EdgeRule::Closed), None);
+    }
+
+    #[test]
+    fn edges_belong_to_closed_triangles() {
+        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.5, 0.5), (0.0, 0.25)] {
+            assert!(intersect(&down(x, y), corners(UNIT), EdgeRule::Closed).is_some());
+        }
+        let just_outside = intersect(&down(0.5, 0.5f32.next_up()), corners(UNIT), EdgeRule::Closed);
+        assert_eq!(just_outside, None);
+    }
+
+    #[test]
+    fn a_fan_around_a_vertex_is_crossed_once() {
+        let rim = [[1.0f32, 0.0], [1.0, 1.0], [-1.0, 2.0], [-1.0, 0.0], [-1.0, -1.0], [0.0, -1.0]];
+        let at = |i: usize| [rim[i % 6][0], rim[i % 6][1], 0.0];
+        for turn in [false, true] {
+            let count = (0..6).filter(|&i| {
+                let (a, b) = if turn && i % 2 == 0 { (at(i + 1), at(i)) } else { (at(i), at(i + 1)) };
+                intersect(&down(0.0, 0.0), corners([[0.0; 3], a, b]), EdgeRule::Crossing).is_some()
+            });
+            assert_eq!(count.count(), 1);
+        }
+    }
+
+    #[test]
+    fn degenerate_and_edge_on_triangles_are_never_hit() {
+        let line = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 0.0, 0.0]];
+        assert_eq!(intersect(&down(0.5, 0.0), corners(line), EdgeRule::Closed), None);
+        let along = Ray::new([-1.0, 0.2, 0.0], [1.0, 0.0, 0.0]);
+        assert_eq!(intersect(&along, corners(UNIT), EdgeRule::Closed), None);
+    }
+
+    #[test]
+    fn scale_keeps_what_it_can() {
+        for x in [1e-45f32, 1e-30, 0.3, 1.0, 7.0, 3e38] {
+            let scaled = Scale::of(Vec3::new(0.0, -x, x * 0.1)).direction(Vec3::new(0.0, -x, 0.0)).y;
+            assert!((0.5..1.0).contains(&-scaled), "{x}: {scaled}");
+        }
+        let scale = Scale::of(Vec3::new(1e-30, 0.0, 0.0));
+        assert_eq!(scale.time(f32::INFINITY), f32::INFINITY);
+        assert!(scale.time(1e38) <= 1e9);
+        assert_eq!(Scale::of(Vec3::new(1e30, 0.0, 0.0)).time(1e38), f32::MAX);
+    }
+
+    /// Deterministic values of very different size, with many repeats and zeros.
+    fn coordinates(seed: u64) -> impl Iterator<Item = f32> {
+        let mut state = seed;
+        std::iter::from_fn(move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let bits = (state >> 33) as u32;
+            let small = ((bits >> 8) % 9) as f32 - 4.0;
+            Some(match bits % 4 {
+                0 | 1 => small,
+                2 => small * 2f32.powi((bits >> 16) as i32 % 120 - 60),
+                _ => f32::from_bits(bits.wrapping_mul(2_654_435_761)),
+            })
+        })
+        .filter(|x| x.is_finite())
+    }
+
+    fn misses_nothing<L: Lanes>(lanes: L, seed: u64) -> usize {
+        let mut next = coordinates(seed);
+        let mut vec3 = || Vec3::from_array(std::array::from_fn(|_| next.next().unwrap()));
+        let mut hits = 0;
+        for _ in 0..4000 {
+            let (v0, v1, v2) = (vec3(), vec3(), vec3());
+            // Half of the rays are aimed at an edge, where rounding matters.
+            let aim = if vec3().x > 0.0 { v0.midpoint(v1) } else { v0 * 0.25 + v1 * 0.5 + v2 * 0.25 };
+            let origin = vec3();
+            let ray = Ray::new(origin, aim - origin).with_interval(-1.0, 1.0);
+            if !ray.is_valid() {
+                continue;
+            }
+            let scale = Scale::of(ray.dir);
+            let splat = [v0, v1, v2].map(|v| v.to_array().map(|x| lanes.splat(x)));
+            let bits = candidates(lanes, &RayLanes::splat(lanes, &ray, scale), splat);
+            if let Some(at) = intersect(&ray, [v0, v1, v2], EdgeRule::Closed)
+                && at.t > ray.t_min
+                && at.t <= ray.t_max
+            {
+                hits += 1;
+                assert_eq!(bits, 0xff, "{ray:?} {v0} {v1} {v2} {at:?}");
+            }
+        }
+        hits
+    }
+
+    #[test]
+    fn candidates_hold_every_hit() {
+        assert!(misses_nothing(Portable, 1) > 500);
+        for (isa, seed) in Isa::available().into_iter().zip(2..) {
+            dispatch!(isa, lanes => misses_nothing(lanes, seed));
+        }
+    }
+}

@@ -1,16 +1,25 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
+mod aabb;
+mod arena;
 mod build;
+mod cluster;
+mod dda;
 mod exact;
 mod hit;
 mod lanes;
 mod mesh;
 mod model;
+mod overlap;
 mod query;
 mod ray;
 mod scene;
+#[cfg(feature = "parallel")]
+mod stream;
+mod traverse;
 mod triangle;
+mod validate;
 
 pub use build::{
     BuildError, BuildOptions, HybridParams, OctreeParams, RecursiveParams, Structure, UniformParams,
@@ -21,4 +30,7 @@ pub use mesh::{MeshError, TriMesh};
 pub use model::{Material, Model};
 pub use query::{All, Any, Closest, Counting, Counts, EdgeRule, Query};
 pub use ray::{Ray, RayPacket};
-pub use scene::{AllHits, HitLists, Scene, Statistics, Violation};
+pub use scene::{AllHits, Scene};
+#[cfg(feature = "parallel")]
+pub use stream::HitLists;
+pub use validate::{Statistics, Violation};

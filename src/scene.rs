@@ -1,15 +1,33 @@
 //! A scene ready for queries.
 
-use crate::build::{BuildError, BuildOptions, Structure};
+use crate::arena::Arena;
+use crate::build::{self, BuildError, BuildOptions, Structure};
 use crate::hit::Hit;
+use crate::lanes::dispatch;
 use crate::mesh::TriMesh;
 use crate::query::{All, Any, Closest, Query};
 use crate::ray::Ray;
+use crate::traverse::{self, Walk};
+use crate::validate::{self, Statistics, Violation};
 
 /// Triangles in a voxel structure, ready for queries.
+///
+/// Holds copies of the triangles, not the mesh. Queries need no exclusive access, neither panic nor
+/// allocate, and give the same bits with every structure, instruction set and number of threads.
+///
+/// ```
+/// use octogrid::{Ray, Scene, TriMesh};
+/// let vertices = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
+/// let scene = Scene::build(&TriMesh::new(&vertices, &[[0, 1, 2]])?, &Default::default())?;
+/// let ray = Ray::new([0.0, 0.0, 2.0], [0.0, 0.0, -1.0]);
+/// assert_eq!(scene.closest(&ray).t, 2.0);
+/// assert!(!scene.occluded(&ray.with_interval(0.0, 1.9)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Scene {
-    structure: Structure,
+    arena: Arena,
+    options: BuildOptions,
     triangles: usize,
 }
 
@@ -18,17 +36,20 @@ pub struct Scene {
 pub struct AllHits {
     /// The number of hits at the start of the buffer.
     pub len: usize,
-    /// Whether the buffer had room for all.
+    /// Whether the buffer had room for all; where not, it holds the first ones along the ray.
     pub complete: bool,
 }
 
 impl Scene {
-    /// Builds the structure.
+    /// Builds the structure that `options` asks for. O(n log n) for n triangles.
+    ///
+    /// # Errors
+    /// [`BuildError`] where a parameter is out of its range or the memory limit does not suffice.
     pub fn build(mesh: &TriMesh<'_>, options: &BuildOptions) -> Result<Self, BuildError> {
-        Ok(Self { structure: options.structure, triangles: mesh.len() })
+        Ok(Self { arena: build::build(mesh, options)?, options: *options, triangles: mesh.len() })
     }
 
-    /// The closest hit, or [`Hit::MISS`].
+    /// The closest hit, or [`Hit::MISS`]; of hits with the same t the one with the least index.
     pub fn closest(&self, ray: &Ray) -> Hit {
         let mut query = Closest::new(ray.t_max);
         self.query(ray, &mut query);
@@ -42,7 +63,22 @@ impl Scene {
         query.found()
     }
 
-    /// All hits, sorted by (t, triangle), into `hits`.
+    /// All hits, each triangle once, sorted by (t, index), into the start of `hits`.
+    ///
+    /// A ray through a shared edge or vertex crosses one of the triangles there (see
+    /// [`crate::EdgeRule::Crossing`]), so a closed mesh is met an even number of times.
+    ///
+    /// ```
+    /// use octogrid::{Hit, Ray, Scene, TriMesh};
+    /// let vertices = [[0.0, 0.0, 1.0], [9.0, 0.0, 1.0], [0.0, 9.0, 1.0], [0.0, 9.0, 4.0], [9.0, 0.0, 4.0]];
+    /// let mesh = TriMesh::new(&vertices, &[[0, 4, 3], [0, 1, 2]])?;
+    /// let scene = Scene::build(&mesh, &Default::default())?;
+    /// let mut hits = [Hit::MISS; 8];
+    /// let found = scene.all(&Ray::new([1.0, 1.0, 0.0], [0.0, 0.0, 1.0]), &mut hits);
+    /// assert!(found.complete);
+    /// assert_eq!(hits[..found.len].iter().map(|h| h.prim).collect::<Vec<_>>(), [1, 0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn all(&self, ray: &Ray, hits: &mut [Hit]) -> AllHits {
         let mut query = All::new(ray.t_max, hits);
         self.query(ray, &mut query);
@@ -51,7 +87,11 @@ impl Scene {
 
     /// Runs any query.
     pub fn query<Q: Query>(&self, ray: &Ray, query: &mut Q) {
-        let _ = (ray, query);
+        let walk = match self.options.structure {
+            Structure::Octree(_) => Walk::Octree,
+            _ => Walk::General,
+        };
+        dispatch!(self.options.isa, lanes => traverse::query(lanes, &self.arena, walk, ray, query));
     }
 
     /// The number of triangles of the mesh.
@@ -61,71 +101,19 @@ impl Scene {
 
     /// The structure and its parameters.
     pub fn structure(&self) -> Structure {
-        self.structure
+        self.options.structure
     }
 
-    /// The bytes that the scene holds.
+    /// The bytes that the structure holds, triangles included.
     pub fn bytes(&self) -> usize {
-        0
+        self.arena.bytes()
     }
 
-    /// [`Scene::closest`] for many rays, on the threads of the current rayon pool.
-    #[cfg(feature = "parallel")]
-    pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Hit]) {
-        let _ = (rays, hits);
-    }
-
-    /// [`Scene::occluded`] for many rays.
-    #[cfg(feature = "parallel")]
-    pub fn occluded_batch(&self, rays: &[Ray], occluded: &mut [bool]) {
-        let _ = (rays, occluded);
-    }
-
-    /// [`Scene::all`] for many rays.
-    #[cfg(feature = "parallel")]
-    pub fn all_batch(&self, rays: &[Ray]) -> HitLists {
-        let _ = rays;
-        HitLists::default()
-    }
-
-    /// Proves every invariant of the structure and measures it.
+    /// Proves every invariant of the structure and measures it. O(size of the structure).
+    ///
+    /// # Errors
+    /// The first invariant that does not hold; that would be a defect of this crate.
     pub fn validate(&self) -> Result<Statistics, Violation> {
-        Ok(Statistics::default())
+        validate::validate(&self.arena, self.triangles)
     }
 }
-
-/// The hits of many rays in one flat list.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct HitLists {
-    /// The hits of ray i are `hits[offsets[i]..offsets[i + 1]]`.
-    pub offsets: Vec<usize>,
-    /// All hits, ray after ray.
-    pub hits: Vec<Hit>,
-}
-
-/// What a structure is made of. Prints as a table.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Statistics {
-    /// Triangles stored.
-    pub triangles: usize,
-    /// Triangles left out because their area is zero.
-    pub degenerate: usize,
-    /// Clusters of up to 8 triangles.
-    pub clusters: usize,
-    /// Voxels: empty ones, leaves, divided ones.
-    pub empty: usize,
-    /// Leaves.
-    pub leaves: usize,
-    /// Divided voxels.
-    pub nodes: usize,
-    /// References to clusters.
-    pub references: usize,
-    /// The deepest level, the top grid being 0.
-    pub depth: usize,
-    /// Bytes by kind.
-    pub bytes: Vec<(&'static str, usize)>,
-}
-
-/// An invariant that does not hold.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Violation(pub String);

@@ -224,17 +224,17 @@ pub(crate) fn candidates<L: Lanes>(lanes: L, ray: &RayLanes<L>, [v0, v1, v2]: [V
 }
 
 #[inline(always)]
-fn minus<L: Lanes>(a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> Vec3Lanes<L> {
+pub(crate) fn minus<L: Lanes>(a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> Vec3Lanes<L> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 #[inline(always)]
-fn cross<L: Lanes>(a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> Vec3Lanes<L> {
+pub(crate) fn cross<L: Lanes>(a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> Vec3Lanes<L> {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[inline(always)]
-fn dot<L: Lanes>(a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> L::F32 {
+pub(crate) fn dot<L: Lanes>(a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> L::F32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

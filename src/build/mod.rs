@@ -1,7 +1,66 @@
-//! From triangles to an arena.
+//! From triangles to an arena: analyse, cluster, split.
+//!
+//! A chain of functions over flat arrays. One driver ([`split`]) owns the work list; a policy only
+//! answers where to split.
 
+mod analysis;
+mod cluster;
+mod grid;
 mod options;
+mod policy;
+mod split;
 
 pub use options::{
     BuildError, BuildOptions, HybridParams, OctreeParams, RecursiveParams, Structure, UniformParams,
 };
+
+use crate::arena::{Arena, BRICK_LEVELS, Form, LIST_LEVELS};
+use crate::dda::{BRICK_MARGIN, LIST_MARGIN};
+use crate::lanes::dispatch;
+use crate::mesh::TriMesh;
+use analysis::Analysis;
+use policy::Policy;
+
+/// Builds the structure that `options` asks for.
+pub(crate) fn build(mesh: &TriMesh<'_>, options: &BuildOptions) -> Result<Arena, BuildError> {
+    options.check()?;
+    let analysis = Analysis::new(mesh);
+    let clusters = cluster::clusters(mesh, &analysis);
+    match &options.structure {
+        Structure::Uniform(p) => finish(&policy::Uniform::new(p, &analysis), clusters, &analysis, 0, options),
+        Structure::Recursive(p) => {
+            finish(&policy::Recursive::new(p, &analysis), clusters, &analysis, LIST_LEVELS, options)
+        }
+        Structure::Octree(p) => {
+            finish(&policy::Octree::new(p, mesh, &analysis), clusters, &analysis, LIST_LEVELS, options)
+        }
+        Structure::Hybrid(p) => {
+            let policy = policy::Hybrid::new(p, &analysis, clusters.len());
+            finish(&policy, clusters, &analysis, p.levels, options)
+        }
+    }
+}
+
+fn finish<P: Policy>(
+    policy: &P,
+    clusters: Vec<crate::cluster::Cluster>,
+    analysis: &Analysis,
+    levels: u32,
+    options: &BuildOptions,
+) -> Result<Arena, BuildError> {
+    // Divided voxels pay only down to where the margin is a small part of them.
+    let (margin, least_side, most_levels) = match policy.form() {
+        Form::Lists { .. } => (LIST_MARGIN, 1.0 / f64::from(1u32 << 22), LIST_LEVELS),
+        Form::Bricks => (BRICK_MARGIN, 1.0 / f64::from(1u32 << 14), BRICK_LEVELS),
+    };
+    let grid = policy.grid();
+    let size = grid.cell * f64::from(grid.dims.into_iter().max().unwrap_or(1));
+    let limits = split::Limits {
+        memory: options.memory_limit,
+        references: (1 << 16) + 64 * analysis.triangles.len(),
+        margin: margin * size,
+        least_side: least_side * size,
+        levels: levels.min(most_levels),
+    };
+    dispatch!(options.isa, lanes => split::build(lanes, policy, clusters, limits))
+}

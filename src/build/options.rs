@@ -3,6 +3,7 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
+use crate::arena::BRICK_LEVELS;
 use crate::lanes::Isa;
 
 /// Parameters of the uniform grid (paper, section 3.1).
@@ -136,6 +137,38 @@ impl Default for BuildOptions {
     /// The hybrid, at most 16 GiB, the best instruction set of this processor.
     fn default() -> Self {
         Self { structure: Structure::HYBRID, memory_limit: 16 << 30, isa: Isa::detect() }
+    }
+}
+
+impl BuildOptions {
+    /// Checks the parameters.
+    pub(crate) fn check(&self) -> Result<(), BuildError> {
+        let above_zero = |name, value: f32| {
+            let fine = value > 0.0 && value.is_finite();
+            Self::require(fine, name, f64::from(value), "finite and above 0")
+        };
+        match self.structure {
+            Structure::Uniform(p) => above_zero("density", p.density),
+            Structure::Recursive(p) => {
+                let fine = RecursiveParams::DIVISIONS.contains(&p.divisions);
+                Self::require(fine, "divisions", f64::from(p.divisions), "from 2 to 8")
+            }
+            Structure::Octree(_) => Ok(()),
+            Structure::Hybrid(p) => {
+                above_zero("density", p.density)?;
+                for (name, cost) in
+                    [("group_cost", p.group_cost), ("brick_cost", p.brick_cost), ("voxel_cost", p.voxel_cost)]
+                {
+                    let fine = cost >= 0.0 && cost.is_finite();
+                    Self::require(fine, name, f64::from(cost), "finite and at least 0")?;
+                }
+                Self::require(p.levels <= BRICK_LEVELS, "levels", f64::from(p.levels), "at most 8")
+            }
+        }
+    }
+
+    fn require(fine: bool, name: &'static str, value: f64, must_be: &'static str) -> Result<(), BuildError> {
+        if fine { Ok(()) } else { Err(BuildError::Parameter { name, value, must_be }) }
     }
 }
 

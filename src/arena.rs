@@ -1,0 +1,226 @@
+//! The arena: every structure as flat arrays of plain data.
+//!
+//! All four structures share it. `words` starts with the voxels of the top grid (one for the octree),
+//! x fastest, and goes on with the voxels of divided ones:
+//!
+//! - a **list** structure (uniform, recursive, octree) keeps all N x N x N voxels of a divided voxel
+//!   together, x fastest, and its leaves are runs of [`Reference`]s to clusters;
+//! - a **brick** structure (hybrid) keeps only the occupied ones of the 64, behind a [`Brick`] with
+//!   their mask, and its leaves are runs of [`BoxGroup`]s.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::cluster::Cluster;
+use crate::lanes::WIDTH;
+
+/// A voxel in 32 bits: empty, a leaf, or divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(transparent)]
+pub(crate) struct VoxelWord(u32);
+
+/// What a [`VoxelWord`] says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Voxel {
+    /// No triangles.
+    Empty,
+    /// The index of the first reference (list) or box group (brick).
+    Leaf(u32),
+    /// The index of the first voxel word (list) or of the brick.
+    Node(u32),
+}
+
+impl VoxelWord {
+    pub(crate) const EMPTY: Self = Self(0);
+    const LEAF: u32 = 1 << 31;
+
+    /// A leaf; `None` where the index has more than 31 bits.
+    pub(crate) fn leaf(first: usize) -> Option<Self> {
+        let first = u32::try_from(first).ok().filter(|i| i & Self::LEAF == 0)?;
+        Some(Self(Self::LEAF | first))
+    }
+
+    /// A divided voxel; `None` where the index does not fit.
+    pub(crate) fn node(first: usize) -> Option<Self> {
+        let word = u32::try_from(first).ok()?.checked_add(1)?;
+        (word & Self::LEAF == 0).then_some(Self(word))
+    }
+
+    /// What it says.
+    #[inline(always)]
+    pub(crate) fn get(self) -> Voxel {
+        match self.0 {
+            0 => Voxel::Empty,
+            word if word & Self::LEAF != 0 => Voxel::Leaf(word & !Self::LEAF),
+            word => Voxel::Node(word - 1),
+        }
+    }
+}
+
+/// A reference to a cluster, and whether it is the last one of its leaf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(transparent)]
+pub(crate) struct Reference(u32);
+
+impl Reference {
+    const LAST: u32 = 1 << 31;
+
+    /// There are never more than 2^31 - 1 triangles, so never more clusters.
+    pub(crate) fn new(cluster: u32, last: bool) -> Self {
+        debug_assert!(cluster & Self::LAST == 0);
+        Self(cluster | if last { Self::LAST } else { 0 })
+    }
+
+    #[inline(always)]
+    pub(crate) fn cluster(self) -> u32 {
+        self.0 & !Self::LAST
+    }
+
+    #[inline(always)]
+    pub(crate) fn is_last(self) -> bool {
+        self.0 & Self::LAST != 0
+    }
+}
+
+/// The occupied ones of 4 x 4 x 4 voxels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Brick {
+    /// Bit x + 4 y + 16 z: that voxel is not empty.
+    pub(crate) occupied: u64,
+    /// The index of the word of the first occupied voxel; the others follow in the order of the bits.
+    pub(crate) first: u32,
+    /// Zero.
+    pub(crate) padding: u32,
+}
+
+/// Eight cluster boxes, clipped to the voxel that they lie in.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(32))]
+pub(crate) struct BoxGroup {
+    /// Lower and upper corners by axis and lane, relative to the grid's lower corner, in cells of the
+    /// top grid. Lanes without a cluster hold an empty box.
+    pub(crate) planes: [[[f32; WIDTH]; 3]; 2],
+    /// The clusters. The first carries whether the group is the last of its leaf.
+    pub(crate) clusters: [Reference; WIDTH],
+}
+
+const _: () = assert!(size_of::<VoxelWord>() == 4 && size_of::<Reference>() == 4);
+const _: () = assert!(size_of::<Brick>() == 16 && size_of::<BoxGroup>() == 224);
+
+/// The uniform grid on top: cubic voxels.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Grid {
+    /// The lower corner.
+    pub(crate) lo: [f64; 3],
+    /// The side of a voxel, above 0.
+    pub(crate) cell: f64,
+    /// The number of voxels along each axis, at least 1.
+    pub(crate) dims: [u32; 3],
+    /// Zero.
+    pub(crate) padding: u32,
+}
+
+impl Grid {
+    pub(crate) fn new(lo: [f64; 3], cell: f64, dims: [u32; 3]) -> Self {
+        Self { lo, cell, dims, padding: 0 }
+    }
+
+    /// The number of voxels.
+    pub(crate) fn len(&self) -> usize {
+        self.dims.iter().map(|&n| n as usize).product()
+    }
+
+    /// The distance in `words` between neighbours along each axis.
+    pub(crate) fn strides(&self) -> [u32; 3] {
+        [1, self.dims[0], self.dims[0] * self.dims[1]]
+    }
+
+    /// The lower corner of the voxel with these indices.
+    pub(crate) fn corner(&self, index: [u32; 3]) -> [f64; 3] {
+        std::array::from_fn(|axis| self.lo[axis] + f64::from(index[axis]) * self.cell)
+    }
+}
+
+/// How divided voxels and leaves are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// N x N x N words; leaves of references.
+    Lists {
+        /// N.
+        divisions: u32,
+    },
+    /// Bricks; leaves of box groups.
+    Bricks,
+}
+
+impl Form {
+    /// The number of parts along each axis of a divided voxel.
+    pub(crate) fn divisions(self) -> u32 {
+        match self {
+            Self::Lists { divisions } => divisions,
+            Self::Bricks => 4,
+        }
+    }
+}
+
+/// The most levels of divided voxels in a list structure.
+pub(crate) const LIST_LEVELS: u32 = 22;
+
+/// The most levels of bricks.
+pub(crate) const BRICK_LEVELS: u32 = 8;
+
+/// A voxel structure.
+#[derive(Clone, Debug)]
+pub(crate) struct Arena {
+    pub(crate) grid: Grid,
+    pub(crate) form: Form,
+    pub(crate) clusters: Vec<Cluster>,
+    pub(crate) words: Vec<VoxelWord>,
+    pub(crate) references: Vec<Reference>,
+    pub(crate) bricks: Vec<Brick>,
+    pub(crate) groups: Vec<BoxGroup>,
+}
+
+impl Arena {
+    /// Bytes by kind.
+    pub(crate) fn bytes_by_kind(&self) -> [(&'static str, usize); 5] {
+        [
+            ("clusters", size_of_val(&*self.clusters)),
+            ("voxels", size_of_val(&*self.words)),
+            ("references", size_of_val(&*self.references)),
+            ("bricks", size_of_val(&*self.bricks)),
+            ("boxes", size_of_val(&*self.groups)),
+        ]
+    }
+
+    /// All bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        self.bytes_by_kind().iter().map(|(_, bytes)| bytes).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_say_what_they_were_made_of() {
+        assert_eq!(VoxelWord::EMPTY.get(), Voxel::Empty);
+        assert_eq!(VoxelWord::leaf(0).unwrap().get(), Voxel::Leaf(0));
+        assert_eq!(VoxelWord::leaf(0x7fff_ffff).unwrap().get(), Voxel::Leaf(0x7fff_ffff));
+        assert_eq!(VoxelWord::node(0).unwrap().get(), Voxel::Node(0));
+        assert_eq!(VoxelWord::node(0x7fff_fffe).unwrap().get(), Voxel::Node(0x7fff_fffe));
+        assert_eq!(VoxelWord::leaf(0x8000_0000), None);
+        assert_eq!(VoxelWord::node(0x7fff_ffff), None);
+        assert_eq!(VoxelWord::node(usize::MAX), None);
+    }
+
+    #[test]
+    fn references_end_with_the_last() {
+        let r = Reference::new(5, true);
+        assert_eq!((r.cluster(), r.is_last()), (5, true));
+        let r = Reference::new(5, false);
+        assert_eq!((r.cluster(), r.is_last()), (5, false));
+    }
+}

@@ -1,0 +1,116 @@
+//! What the phases of the build need to know of a mesh: bounds, zero areas, planes, evenness.
+
+use glam::{DVec3, Vec3};
+
+use crate::aabb::Aabb;
+use crate::exact::{self, Expansion};
+use crate::mesh::TriMesh;
+
+/// The triangles that can be hit, and how they lie.
+pub(crate) struct Analysis {
+    /// Triangles whose area is not zero.
+    pub(crate) triangles: Vec<u32>,
+    /// The box of each of them.
+    pub(crate) boxes: Vec<Aabb>,
+    /// The box around all.
+    pub(crate) bounds: Aabb,
+}
+
+impl Analysis {
+    pub(crate) fn new(mesh: &TriMesh<'_>) -> Self {
+        let triangles: Vec<u32> =
+            (0..mesh.len() as u32).filter(|&i| !is_degenerate(mesh.corners(i))).collect();
+        let boxes: Vec<Aabb> = triangles.iter().map(|&i| Aabb::around(mesh.corners(i))).collect();
+        let bounds = boxes.iter().fold(Aabb::EMPTY, |a, &b| a.union(b));
+        Self { triangles, boxes, bounds }
+    }
+
+    /// The share of voxels that the triangles' centres occupy in a grid with about one voxel for every
+    /// eight triangles: near 1 where they are spread evenly, near 0 where they crowd in few places.
+    pub(crate) fn evenness(&self) -> f64 {
+        let grid = super::grid::cubic(&self.bounds, self.triangles.len() as f64 / 8.0);
+        let mut occupied = vec![false; grid.len()];
+        let strides = grid.strides();
+        for b in &self.boxes {
+            let center = b.center();
+            let at: u32 = (0..3)
+                .map(|axis| {
+                    let cell = (f64::from(center[axis]) - grid.lo[axis]) / grid.cell;
+                    (cell as u32).min(grid.dims[axis] - 1) * strides[axis]
+                })
+                .sum();
+            occupied[at as usize] = true;
+        }
+        occupied.iter().filter(|&&o| o).count() as f64 / occupied.len() as f64
+    }
+}
+
+/// Whether the area is exactly zero, so that no ray can hit the triangle.
+fn is_degenerate([v0, v1, v2]: [Vec3; 3]) -> bool {
+    let (e1, e2) = (v1.as_dvec3() - v0.as_dvec3(), v2.as_dvec3() - v0.as_dvec3());
+    let bound = 8.0 * f64::EPSILON * e1.abs().max_element() * e2.abs().max_element();
+    if e1.cross(e2).abs().max_element() > bound {
+        return false;
+    }
+    let edge = |to: Vec3| -> [Expansion; 3] {
+        std::array::from_fn(|axis| Expansion::difference(f64::from(to[axis]), f64::from(v0[axis])))
+    };
+    exact::cross(&edge(v1), &edge(v2)).iter().all(|e| e.sign() == 0.0)
+}
+
+/// For each triangle of the mesh a number that triangles in the same plane share.
+///
+/// Planes count as the same where their unit normals (of either sense) agree to 2^-16 and their
+/// distances to 2^-20 of the scene's size; a heuristic for the octree's criterion, of no influence on
+/// any answer.
+pub(crate) fn planes(mesh: &TriMesh<'_>, analysis: &Analysis) -> Vec<u32> {
+    let size = analysis.bounds.extent().as_dvec3().max_element();
+    let middle = analysis.bounds.center().as_dvec3();
+    let mut keys: Vec<([i64; 4], u32)> =
+        analysis.triangles.iter().map(|&i| (plane_key(mesh.corners(i), middle, size), i)).collect();
+    keys.sort_unstable();
+    let mut planes = vec![u32::MAX; mesh.len()];
+    let mut plane = 0;
+    for (i, (key, triangle)) in keys.iter().enumerate() {
+        plane += u32::from(i > 0 && *key != keys[i - 1].0);
+        planes[*triangle as usize] = plane;
+    }
+    planes
+}
+
+fn plane_key(corners: [Vec3; 3], middle: DVec3, size: f64) -> [i64; 4] {
+    let [v0, v1, v2] = corners.map(|c| c.as_dvec3() - middle);
+    let normal = (v1 - v0).cross(v2 - v0).normalize_or_zero();
+    let rounded = (normal * 65536.0).round().to_array().map(|x| x as i64);
+    let flip = if rounded.iter().find(|&&x| x != 0).is_some_and(|&x| x < 0) { -1 } else { 1 };
+    let distance = (normal.dot(v0) / size * 1_048_576.0).round() as i64;
+    let [x, y, z] = rounded;
+    [x, y, z, distance].map(|k| k * flip)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zero_area_is_exact() {
+        let corners = |v: [[f32; 3]; 3]| v.map(Vec3::from_array);
+        assert!(is_degenerate(corners([[0.1; 3], [0.3; 3], [0.7; 3]])));
+        assert!(is_degenerate(corners([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [1.0, 2.0, 3.0]])));
+        let almost = [[0.1, 0.1, 0.1], [0.3, 0.3, 0.3], [0.7, 0.7, 0.7f32.next_up()]];
+        assert!(!is_degenerate(corners(almost)));
+        assert!(!is_degenerate(corners([[0.0; 3], [1e-45, 0.0, 0.0], [0.0, 1e-45, 0.0]])));
+        assert!(!is_degenerate(corners([[0.0; 3], [3e38, 0.0, 0.0], [0.0, -3e38, 0.0]])));
+    }
+
+    #[test]
+    fn coplanar_triangles_share_a_plane_of_either_sense() {
+        let v = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 1.0, 1.0], [0.0, 1.0, 1.0], [0.0, 0.0, 0.0]];
+        let mesh = TriMesh::new(&v, &[[0, 1, 2], [0, 3, 2], [4, 1, 2], [0, 0, 1]]).unwrap();
+        let analysis = Analysis::new(&mesh);
+        assert_eq!(analysis.triangles, [0, 1, 2]);
+        let planes = planes(&mesh, &analysis);
+        assert_eq!(planes[0], planes[1]);
+        assert_ne!(planes[0], planes[2]);
+    }
+}

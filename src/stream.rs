@@ -1,0 +1,83 @@
+//! Many rays at once, on the threads of the current rayon pool.
+//!
+//! Answers come in the order of the rays and are the same for any number of threads.
+
+use rayon::prelude::*;
+
+use crate::hit::Hit;
+use crate::ray::Ray;
+use crate::scene::Scene;
+
+/// Rays a task: enough to make up for its cost, few enough to spread uneven work.
+const CHUNK: usize = 1024;
+
+/// The hits of many rays in one flat list.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct HitLists {
+    /// The hits of ray i are `hits[offsets[i]..offsets[i + 1]]`; one more than there are rays.
+    pub offsets: Vec<usize>,
+    /// All hits, ray after ray.
+    pub hits: Vec<Hit>,
+}
+
+impl HitLists {
+    /// The hits of one ray.
+    ///
+    /// # Panics
+    /// Where `ray` is not below the number of rays.
+    pub fn of(&self, ray: usize) -> &[Hit] {
+        &self.hits[self.offsets[ray]..self.offsets[ray + 1]]
+    }
+}
+
+impl Scene {
+    /// [`Scene::closest`] of each ray.
+    ///
+    /// # Panics
+    /// Where the slices differ in length.
+    pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Hit]) {
+        assert_eq!(rays.len(), hits.len(), "one hit a ray");
+        rays.par_chunks(CHUNK).zip(hits.par_chunks_mut(CHUNK)).for_each(|(rays, hits)| {
+            rays.iter().zip(hits).for_each(|(ray, hit)| *hit = self.closest(ray));
+        });
+    }
+
+    /// [`Scene::occluded`] of each ray.
+    ///
+    /// # Panics
+    /// Where the slices differ in length.
+    pub fn occluded_batch(&self, rays: &[Ray], occluded: &mut [bool]) {
+        assert_eq!(rays.len(), occluded.len(), "one answer a ray");
+        rays.par_chunks(CHUNK).zip(occluded.par_chunks_mut(CHUNK)).for_each(|(rays, occluded)| {
+            rays.iter().zip(occluded).for_each(|(ray, found)| *found = self.occluded(ray));
+        });
+    }
+
+    /// [`Scene::all`] of each ray, complete.
+    pub fn all_batch(&self, rays: &[Ray]) -> HitLists {
+        let chunks: Vec<(Vec<usize>, Vec<Hit>)> =
+            rays.par_chunks(CHUNK).map(|rays| self.all_of_chunk(rays)).collect();
+        let mut lists = HitLists { offsets: vec![0], hits: Vec::new() };
+        for (ends, hits) in chunks {
+            let start = lists.hits.len();
+            lists.offsets.extend(ends.into_iter().map(|end| start + end));
+            lists.hits.extend(hits);
+        }
+        lists
+    }
+
+    fn all_of_chunk(&self, rays: &[Ray]) -> (Vec<usize>, Vec<Hit>) {
+        let mut buffer = vec![Hit::MISS; 64];
+        let (mut ends, mut hits) = (Vec::with_capacity(rays.len()), Vec::new());
+        for ray in rays {
+            let mut found = self.all(ray, &mut buffer);
+            while !found.complete {
+                buffer.resize(2 * buffer.len(), Hit::MISS);
+                found = self.all(ray, &mut buffer);
+            }
+            hits.extend_from_slice(&buffer[..found.len]);
+            ends.push(hits.len());
+        }
+        (ends, hits)
+    }
+}

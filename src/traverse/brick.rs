@@ -1,0 +1,156 @@
+//! The 4 x 4 x 4 voxels of a brick that a path meets, as a 64-bit mask found without stepping.
+//!
+//! Along each axis a voxel is a time interval. Three intervals overlap iff they do so pairwise, so three
+//! times 16 comparisons (x and y, x and z, y and z) say it for all 64 voxels. In the mirrored order of
+//! [`Path`](crate::dda::Path), bit x + 4 y + 16 z, the lowest set bit is the next voxel on the path.
+
+use crate::lanes::{Lanes, WIDTH};
+
+/// When a path enters a brick's lower planes, and how long it takes to cross one voxel, by axis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BrickPath {
+    pub(crate) enter: [f32; 3],
+    pub(crate) width: [f32; 3],
+}
+
+impl BrickPath {
+    /// The same for the brick that fills the voxel with this index (x + 4 y + 16 z, mirrored).
+    #[inline(always)]
+    pub(crate) fn child(&self, index: u32) -> Self {
+        let at = |axis: usize| (index >> (2 * axis) & 3) as f32;
+        Self {
+            enter: std::array::from_fn(|axis| self.enter[axis] + at(axis) * self.width[axis]),
+            width: self.width.map(|w| 0.25 * w),
+        }
+    }
+
+    /// When the path enters the brick at the earliest, given the slack of [`BrickPath::slack`].
+    #[inline(always)]
+    pub(crate) fn earliest(&self) -> f32 {
+        let at = |axis: usize| self.enter[axis] - self.slack(axis);
+        at(0).max(at(1)).max(at(2))
+    }
+
+    /// More than the rounding errors of the times of this brick's planes, its parent's and its
+    /// children's, so that the intervals of neighbours meet.
+    #[inline(always)]
+    fn slack(&self, axis: usize) -> f32 {
+        (self.enter[axis].abs() + 4.0 * self.width[axis]) * 2f32.powi(-21)
+    }
+
+    /// The voxels that the path meets from time 0 to `limit`.
+    #[inline(always)]
+    pub(crate) fn mask<L: Lanes>(&self, lanes: L, limit: f32) -> u64 {
+        // The index along an axis that runs with the lane, and of one that runs with half the lanes.
+        const FAST: [f32; WIDTH] = [0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0];
+        const SLOW: [f32; WIDTH] = [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
+        let (fast, slow) = (lanes.load(&FAST), lanes.load(&SLOW));
+        let intervals = |axis: usize, index: L::F32| {
+            let (enter, width, slack) = (self.enter[axis], self.width[axis], self.slack(axis));
+            let start = lanes.splat(enter - slack) + index * lanes.splat(width);
+            let end = lanes.splat(enter + width + slack) + index * lanes.splat(width);
+            (lanes.max(start, lanes.splat(0.0)), lanes.min(end, lanes.splat(limit)))
+        };
+        let apart = |a: (L::F32, L::F32), b: (L::F32, L::F32)| {
+            lanes.bits(lanes.less(a.1, b.0) | lanes.less(b.1, a.0))
+        };
+        // Bit f + 4 s of a pair: the intervals f of the fast and s of the slow axis overlap.
+        let pair = |f: usize, s: usize| {
+            let a = intervals(f, fast);
+            let low = apart(a, intervals(s, slow));
+            let high = apart(a, intervals(s, slow + lanes.splat(2.0)));
+            u64::from(!(low | high << 8) & 0xffff)
+        };
+        let (xy, xz, yz) = (pair(0, 1), pair(0, 2), pair(1, 2));
+        let (xz, yz) = (spread_nibbles(xz), spread_bits(spread_nibbles(yz)));
+        xy.wrapping_mul(0x0001_0001_0001_0001) & xz.wrapping_mul(0x1111) & yz.wrapping_mul(0xf)
+    }
+}
+
+/// The four low nibbles to bits 0, 16, 32, 48.
+#[inline(always)]
+fn spread_nibbles(x: u64) -> u64 {
+    let x = (x | x << 24) & 0x0000_00ff_0000_00ff;
+    (x | x << 12) & 0x000f_000f_000f_000f
+}
+
+/// The bits of the low nibble of each 16 bits to its bits 0, 4, 8, 12.
+#[inline(always)]
+fn spread_bits(x: u64) -> u64 {
+    let x = (x | x << 6) & 0x0303_0303_0303_0303;
+    (x | x << 3) & 0x1111_1111_1111_1111
+}
+
+/// The mask with the axes of `octant` mirrored.
+#[inline(always)]
+pub(crate) fn mirror(mut mask: u64, octant: u32) -> u64 {
+    let swap = |mask: u64, low: u64, shift: u32| (mask & low) << shift | (mask >> shift) & low;
+    if octant & 1 != 0 {
+        mask = swap(swap(mask, 0x5555_5555_5555_5555, 1), 0x3333_3333_3333_3333, 2);
+    }
+    if octant & 2 != 0 {
+        mask = swap(swap(mask, 0x0f0f_0f0f_0f0f_0f0f, 4), 0x00ff_00ff_00ff_00ff, 8);
+    }
+    if octant & 4 != 0 {
+        mask = swap(mask, 0x0000_ffff_0000_ffff, 16).rotate_left(32);
+    }
+    mask
+}
+
+/// What to XOR a mirrored index with.
+#[inline(always)]
+pub(crate) fn mirror_index(octant: u32) -> u32 {
+    (0..3).map(|axis| (octant >> axis & 1) * 3 << (2 * axis)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::Portable;
+
+    /// Voxel by voxel, in f64, without slack.
+    fn slow_mask(path: &BrickPath, limit: f32) -> u64 {
+        let met = |index: u32| {
+            let (mut start, mut end) = (0f64, f64::from(limit));
+            for axis in 0..3 {
+                let at = f64::from(index >> (2 * axis) & 3);
+                let (enter, width) = (f64::from(path.enter[axis]), f64::from(path.width[axis]));
+                start = start.max(enter + at * width);
+                end = end.min(enter + (at + 1.0) * width);
+            }
+            start <= end
+        };
+        (0..64).map(|i| u64::from(met(i)) << i).sum()
+    }
+
+    #[test]
+    fn masks_are_those_of_single_voxels() {
+        for i in 0..2000u32 {
+            let value = |k: u32| (i.wrapping_mul(2_654_435_761).rotate_left(k * 5) >> 20) as f32 / 4096.0;
+            let path = BrickPath {
+                enter: [0, 1, 2].map(|k| 3.0 * value(k) - 2.0),
+                width: [3, 4, 5].map(|k| 1.0 / (value(k) + 1e-3)),
+            };
+            let limit = if i % 2 == 0 { f32::INFINITY } else { 2.0 * value(6) };
+            assert_eq!(path.mask(Portable, limit), slow_mask(&path, limit), "{path:?} {limit}");
+        }
+    }
+
+    #[test]
+    fn a_diagonal_meets_the_voxels_around_it() {
+        let path = BrickPath { enter: [0.0; 3], width: [1.0; 3] };
+        let mask = path.mask(Portable, f32::INFINITY);
+        for i in 0..4 {
+            assert_ne!(mask & 1 << (21 * i), 0);
+        }
+    }
+
+    #[test]
+    fn mirroring_agrees_with_the_index() {
+        for octant in 0..8 {
+            for bit in 0..64 {
+                assert_eq!(mirror(1 << bit, octant), 1 << (bit ^ mirror_index(octant)));
+            }
+        }
+    }
+}

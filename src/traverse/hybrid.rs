@@ -1,0 +1,178 @@
+//! The walk through the hybrid: a DDA over the top grid, masks within bricks, boxes before clusters.
+//!
+//! The paper's future work: a regular grid on top, and below it levels of N = 2, two of which make a
+//! 4 x 4 x 4 brick. Empty voxels of a brick are never stepped through: the mask of those that the path
+//! meets, ANDed with that of the occupied ones, is popped from its lowest bit, which is the next voxel.
+//!
+//! # Errors
+//! Times within bricks are f32. A plane lies at most 2^10 cells from the start, so the roundings of the
+//! start, the plane, their difference and its product with `width` misplace it by less than 2^-20 of
+//! the grid; voxels and boxes are built larger by twice that, see
+//! [`BRICK_MARGIN`](crate::dda::BRICK_MARGIN).
+
+use std::ops::ControlFlow;
+
+use super::Visit;
+use super::brick::{BrickPath, mirror, mirror_index};
+use super::leaf::LeafTest;
+use crate::arena::{Arena, BRICK_LEVELS, BoxGroup, Voxel};
+use crate::dda::{Dda, Path, signed_strides};
+use crate::lanes::Lanes;
+use crate::query::Query;
+use crate::triangle::Vec3Lanes;
+
+#[inline(always)]
+pub(crate) fn walk<L: Lanes, Q: Query>(
+    arena: &Arena,
+    path: &Path,
+    leaf: &mut LeafTest<'_, L, Q>,
+) -> ControlFlow<()> {
+    let strides = signed_strides(arena.grid.strides(), path.octant);
+    let mut dda = Dda::new(path, &arena.grid);
+    let mut bricks = Bricks::new(arena, path, leaf);
+    loop {
+        bricks.leaf.enter();
+        let word = &arena.words[dda.voxel as usize];
+        bricks.leaf.read(word);
+        match word.get() {
+            Voxel::Empty => {}
+            Voxel::Leaf(first) => bricks.groups(first)?,
+            Voxel::Node(brick) => {
+                let times = BrickPath {
+                    enter: std::array::from_fn(|axis| (dda.exit[axis] - path.width[axis]) as f32),
+                    width: path.width.map(|w| 0.25 * w as f32),
+                };
+                bricks.descend(brick, times)?;
+            }
+        }
+        let axis = dda.axis();
+        if dda.exit[axis] > f64::from(bricks.limit) || !dda.step(axis, &path.width, &strides) {
+            return ControlFlow::Continue(());
+        }
+    }
+}
+
+/// A brick on the stack: its voxels that are still to be visited.
+#[derive(Clone, Copy)]
+struct Frame {
+    brick: u32,
+    times: BrickPath,
+    mask: u64,
+}
+
+/// What the walk needs below the top grid.
+struct Bricks<'w, 'a, L: Lanes, Q> {
+    arena: &'w Arena,
+    path: &'w Path,
+    leaf: &'w mut LeafTest<'a, L, Q>,
+    /// No hit comes after this time.
+    limit: f32,
+    /// Where time is 0, relative to the grid's lower corner.
+    origin: Vec3Lanes<L>,
+    /// Time a cell, with the sign of the direction.
+    slope: Vec3Lanes<L>,
+}
+
+impl<'w, 'a, L: Lanes, Q: Query> Bricks<'w, 'a, L, Q> {
+    #[inline(always)]
+    fn new(arena: &'w Arena, path: &'w Path, leaf: &'w mut LeafTest<'a, L, Q>) -> Self {
+        let lanes = leaf.lanes;
+        let mirrored = |axis: usize| path.octant >> axis & 1 != 0;
+        let origin = std::array::from_fn(|axis| {
+            let p = path.origin[axis];
+            lanes.splat(if mirrored(axis) { f64::from(arena.grid.dims[axis]) - p } else { p } as f32)
+        });
+        let slope = std::array::from_fn(|axis| {
+            let w = path.width[axis] as f32;
+            lanes.splat(if mirrored(axis) { -w } else { w })
+        });
+        let mut bricks = Self { arena, path, leaf, limit: 0.0, origin, slope };
+        bricks.update_limit();
+        bricks
+    }
+
+    #[inline(always)]
+    fn update_limit(&mut self) {
+        self.limit = (self.path.time(self.leaf.limit()) as f32).next_up();
+    }
+
+    /// Visits the occupied voxels of a brick that the path meets, front to back, and what is below.
+    #[inline(always)]
+    fn descend(&mut self, brick: u32, times: BrickPath) -> ControlFlow<()> {
+        let flip = mirror_index(self.path.octant);
+        let mut frame = self.frame(brick, times);
+        let mut stack = [frame; BRICK_LEVELS as usize];
+        let mut depth = 0;
+        loop {
+            while frame.mask == 0 {
+                if depth == 0 {
+                    return ControlFlow::Continue(());
+                }
+                depth -= 1;
+                frame = stack[depth];
+            }
+            let index = frame.mask.trailing_zeros();
+            frame.mask &= frame.mask - 1;
+            let times = frame.times.child(index);
+            if times.earliest() > self.limit {
+                continue;
+            }
+            let brick = &self.arena.bricks[frame.brick as usize];
+            let before = brick.occupied & ((1 << (index ^ flip)) - 1);
+            let word = &self.arena.words[(brick.first + before.count_ones()) as usize];
+            self.leaf.enter();
+            self.leaf.read(word);
+            match word.get() {
+                Voxel::Empty => {}
+                Voxel::Leaf(first) => self.groups(first)?,
+                Voxel::Node(brick) => {
+                    stack[depth] = frame;
+                    depth += 1;
+                    frame = self.frame(brick, times);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn frame(&mut self, index: u32, times: BrickPath) -> Frame {
+        let brick = &self.arena.bricks[index as usize];
+        self.leaf.read(brick);
+        let occupied = mirror(brick.occupied, self.path.octant);
+        Frame { brick: index, times, mask: occupied & times.mask(self.leaf.lanes, self.limit) }
+    }
+
+    /// Tests the box groups of a leaf from `first` on, and the clusters whose boxes the path meets.
+    #[inline(always)]
+    fn groups(&mut self, first: u32) -> ControlFlow<()> {
+        for group in &self.arena.groups[first as usize..] {
+            self.leaf.read(group);
+            let mut met = self.boxes(group);
+            while met != 0 {
+                let lane = met.trailing_zeros() as usize;
+                met &= met - 1;
+                self.leaf.cluster(group.clusters[lane].cluster())?;
+            }
+            self.update_limit();
+            if group.clusters[0].is_last() {
+                break;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The boxes that the path meets up to the limit, as bits: the slabs of eight boxes at once.
+    #[inline(always)]
+    fn boxes(&self, group: &BoxGroup) -> u32 {
+        let lanes = self.leaf.lanes;
+        let (mut start, mut end) = (lanes.splat(0.0), lanes.splat(self.limit));
+        for axis in 0..3 {
+            let mirrored = (self.path.octant >> axis & 1) as usize;
+            let time =
+                |side: usize| (lanes.load(&group.planes[side][axis]) - self.origin[axis]) * self.slope[axis];
+            start = lanes.max(start, time(mirrored));
+            end = lanes.min(end, time(1 - mirrored));
+        }
+        !lanes.bits(lanes.less(end, start)) & 0xff
+    }
+}

@@ -1,0 +1,113 @@
+//! Testing a leaf: its clusters against the ray, and what is hit to the query.
+
+use std::ops::ControlFlow;
+
+use super::Visit;
+use crate::arena::Arena;
+use crate::exact::midpoint;
+use crate::hit::Hit;
+use crate::lanes::Lanes;
+use crate::query::Query;
+use crate::ray::Ray;
+use crate::triangle::{RayLanes, Scale, candidates, intersect};
+
+/// Clusters tested last, which need no second test.
+///
+/// A cluster that lies in several voxels is met again soon or not at all, so a few are enough
+/// (mailboxing: J. Amanatides and A. Woo, 1987).
+struct Mailbox {
+    recent: [u32; 8],
+    next: usize,
+}
+
+impl Mailbox {
+    const EMPTY: Self = Self { recent: [u32::MAX; 8], next: 0 };
+
+    /// Whether the cluster is new; it no longer is afterwards.
+    #[inline(always)]
+    fn is_new(&mut self, cluster: u32) -> bool {
+        let known = self.recent.iter().fold(false, |known, &c| known | (c == cluster));
+        if !known {
+            self.recent[self.next % 8] = cluster;
+            self.next += 1;
+        }
+        !known
+    }
+}
+
+/// Tests leaves for one ray and query.
+pub(crate) struct LeafTest<'a, L: Lanes, Q> {
+    pub(crate) lanes: L,
+    arena: &'a Arena,
+    ray: &'a Ray,
+    scale: Scale,
+    ray_lanes: RayLanes<L>,
+    mailbox: Mailbox,
+    query: &'a mut Q,
+}
+
+impl<'a, L: Lanes, Q: Query> LeafTest<'a, L, Q> {
+    #[inline(always)]
+    pub(crate) fn new(lanes: L, arena: &'a Arena, ray: &'a Ray, query: &'a mut Q) -> Self {
+        let scale = Scale::of(ray.dir);
+        let ray_lanes = RayLanes::splat(lanes, ray, scale);
+        Self { lanes, arena, ray, scale, ray_lanes, mailbox: Mailbox::EMPTY, query }
+    }
+
+    /// Tests one cluster, unless that was done just now.
+    #[inline(always)]
+    pub(crate) fn cluster(&mut self, index: u32) -> ControlFlow<()> {
+        if !self.mailbox.is_new(index) {
+            return ControlFlow::Continue(());
+        }
+        let cluster = &self.arena.clusters[index as usize];
+        self.query.on_cluster();
+        self.query.on_read(cluster);
+        let mut bits = candidates(self.lanes, &self.ray_lanes, cluster.lanes(self.lanes));
+        while bits != 0 {
+            let lane = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            let prim = cluster.ids()[lane];
+            if prim == crate::cluster::Cluster::NO_TRIANGLE {
+                break;
+            }
+            let Some(at) = intersect(self.ray, cluster.triangle(lane), Q::RULE) else { continue };
+            if at.t > self.ray.t_min && at.t <= self.query.t_max() {
+                self.query.accept(Hit { t: at.t, u: at.u, v: at.v, prim })?;
+                self.ray_lanes.t_max = self.lanes.splat(self.scale.time(self.query.t_max()));
+            }
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl<L: Lanes, Q: Query> Visit for LeafTest<'_, L, Q> {
+    #[inline(always)]
+    fn enter(&mut self) {
+        self.query.on_voxel();
+    }
+
+    #[inline(always)]
+    fn read<T>(&mut self, data: &T) {
+        self.query.on_read(data);
+    }
+
+    #[inline(always)]
+    fn leaf(&mut self, first: u32) -> ControlFlow<()> {
+        for reference in &self.arena.references[first as usize..] {
+            self.query.on_read(reference);
+            self.cluster(reference.cluster())?;
+            if reference.is_last() {
+                break;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// A hit counts if its t, rounded, is at most the query's.
+    #[inline(always)]
+    fn limit(&self) -> f64 {
+        let t_max = self.query.t_max();
+        midpoint(t_max, t_max.next_up())
+    }
+}

@@ -4,6 +4,7 @@
 mod aabb;
 mod arena;
 mod build;
+pub mod builtin;
 mod cluster;
 mod dda;
 mod exact;

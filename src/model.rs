@@ -1,5 +1,7 @@
 //! A scene as files and generators hold it: owned triangles with their materials.
 
+use std::collections::HashMap;
+
 use crate::mesh::{MeshError, TriMesh};
 
 /// What a renderer needs to know of a surface, and no more.
@@ -59,5 +61,63 @@ impl Model {
     pub fn material(&self, triangle: u32) -> Option<&Material> {
         let id = *self.material_ids.get(triangle as usize)?;
         self.materials.get(id as usize)
+    }
+    /// The lights: connected groups of triangles whose material emits.
+    ///
+    /// Triangles are connected where they share a vertex index. Groups are in the order of their
+    /// lowest triangle, and so are the triangles within each.
+    pub fn lights(&self) -> Vec<Vec<u32>> {
+        let emits = |t: &u32| self.material(*t).is_some_and(Material::is_light);
+        let emitters: Vec<u32> = (0..self.triangles.len() as u32).filter(emits).collect();
+        let mut parents: Vec<u32> = (0..self.vertices.len() as u32).collect();
+        for [a, b, c] in emitters.iter().map(|&t| self.triangles[t as usize]) {
+            unite(&mut parents, a, b);
+            unite(&mut parents, a, c);
+        }
+        let mut groups: Vec<Vec<u32>> = Vec::new();
+        let mut group_of = HashMap::new();
+        for triangle in emitters {
+            let root = find(&mut parents, self.triangles[triangle as usize][0]);
+            let group = *group_of.entry(root).or_insert_with(|| {
+                groups.push(Vec::new());
+                groups.len() - 1
+            });
+            groups[group].push(triangle);
+        }
+        groups
+    }
+}
+
+/// The representative of a set of the union-find forest, with path halving.
+fn find(parents: &mut [u32], mut item: u32) -> u32 {
+    while parents[item as usize] != item {
+        let grandparent = parents[parents[item as usize] as usize];
+        parents[item as usize] = grandparent;
+        item = grandparent;
+    }
+    item
+}
+
+fn unite(parents: &mut [u32], a: u32, b: u32) {
+    let (a, b) = (find(parents, a), find(parents, b));
+    parents[a.max(b) as usize] = a.min(b);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lights_are_connected_groups() {
+        let mut lamp = Material::diffuse("lamp", [1.0; 3]);
+        lamp.emission = [0.0, 2.0, 0.0];
+        let model = Model {
+            vertices: vec![[0.0; 3]; 9],
+            triangles: vec![[0, 1, 2], [6, 7, 8], [3, 4, 5], [2, 3, 6], [8, 1, 1]],
+            materials: vec![Material::default(), lamp],
+            material_ids: vec![1, 1, 1, 0, 1],
+        };
+        assert_eq!(model.lights(), [vec![0, 1, 4], vec![2]]);
+        assert!(Model::default().lights().is_empty());
     }
 }

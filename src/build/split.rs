@@ -169,7 +169,7 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
             && references < self.limits.references
     }
 
-    /// Divides a voxel; `None` where every occupied part would keep all triangles.
+    /// Divides a voxel; `None` where that gains nothing.
     fn divide(
         &mut self,
         range: Range<usize>,
@@ -181,7 +181,7 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
         let parts = Grid::new(cube.lo, cube.side / f64::from(n), [n; 3]);
         let floor = self.items.len();
         let starts = self.distribute(range.clone(), &parts);
-        if starts.windows(2).all(|r| r[0] == r[1] || self.keeps_all(&range, r[0]..r[1])) {
+        if !self.gains(range, starts[0]..self.items.len()) {
             self.items.truncate(floor);
             return Ok(None);
         }
@@ -201,9 +201,16 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
         Ok(Some((node, self.policy.node_cost(sum, occupied.len() as u32))))
     }
 
-    fn keeps_all(&self, all: &Range<usize>, part: Range<usize>) -> bool {
-        let count = |r: Range<usize>| self.items[r].iter().map(|i| i.mask.count_ones()).sum::<u32>();
-        count(part) == count(all.clone())
+    /// Whether division spares a ray through the voxel some triangle tests, given that it meets a part
+    /// with a chance of 1 / N^2 (the ratio of the areas).
+    ///
+    /// Without this, a threshold below the number of triangles around a vertex would never be met there.
+    fn gains(&self, whole: Range<usize>, parts: Range<usize>) -> bool {
+        let triangles =
+            |r: Range<usize>| self.items[r].iter().map(|i| u64::from(i.mask.count_ones())).sum::<u64>();
+        let n = u64::from(self.arena.form.divisions());
+        // About 3 N / 2 steps lead through the parts, each as dear as a test.
+        self.arena.form == Form::Bricks || triangles(parts) + n * n * (3 * n / 2) < n * n * triangles(whole)
     }
 
     /// Makes room for the parts of a divided voxel: its word, and the index of the first part's.

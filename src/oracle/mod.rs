@@ -1,16 +1,21 @@
 //! What the answers must be, found in ways too simple to be wrong, and the one assertion on them.
 //!
 //! For tests, fuzz targets and benches. Slow by design: the number of triangles times the number of
+//! rays.
 //!
 //! - [`exact`]: integers of any length, correct by construction, no code shared with the structures;
 //! - [`brute`]: the library's own kernel on every triangle, the same bits as every structure;
+//! - [`rays`] and [`meshes`]: seeded cases, the ordinary ones and the hazards;
 
 pub mod brute;
 pub mod exact;
 mod filter;
+pub mod meshes;
 mod rational;
+pub mod rays;
 mod rng;
 mod scan;
+mod source;
 
 pub use rng::SplitMix64;
 pub use scan::Answer;

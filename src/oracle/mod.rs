@@ -6,8 +6,12 @@
 //! - [`exact`]: integers of any length, correct by construction, no code shared with the structures;
 //! - [`brute`]: the library's own kernel on every triangle, the same bits as every structure;
 //! - [`rays`] and [`meshes`]: seeded cases, the ordinary ones and the hazards;
+//! - [`Agreement`]: builds structures and compares all their answers with both.
 
+mod agree;
 pub mod brute;
+mod compare;
+mod disagreement;
 pub mod exact;
 mod filter;
 pub mod meshes;
@@ -17,5 +21,7 @@ mod rng;
 mod scan;
 mod source;
 
+pub use agree::{Agreement, Report, assert_agree, check_agree};
+pub use disagreement::Disagreement;
 pub use rng::SplitMix64;
 pub use scan::Answer;

@@ -1,0 +1,161 @@
+//! The one assertion: every structure answers every query as brute force and exact arithmetic do.
+
+use super::compare::{self, Subject};
+use super::disagreement::Disagreement;
+use super::{brute, exact};
+use crate::build::{BuildOptions, HybridParams, OctreeParams, RecursiveParams, Structure, UniformParams};
+use crate::lanes::Isa;
+use crate::mesh::TriMesh;
+use crate::ray::Ray;
+use crate::scene::Scene;
+
+/// What to compare.
+///
+/// ```
+/// use octogrid::oracle::{Agreement, rays};
+/// use octogrid::{Structure, TriMesh};
+/// let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mesh = TriMesh::new(&vertices, &[[0, 1, 2]])?;
+/// let octree = Agreement { structures: vec![Structure::OCTREE], ..Agreement::quick() };
+/// let report = octree.assert(&mesh, &rays::hazards(&mesh, 1, 100));
+/// assert_eq!((report.rays, report.structures), (100, 1));
+/// # Ok::<(), octogrid::MeshError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Agreement {
+    /// The structures to build, each for each instruction set.
+    pub structures: Vec<Structure>,
+    /// The instruction sets to run the queries with.
+    pub isas: Vec<Isa>,
+    /// The number of threads of each pool in which batches run; without the feature `parallel` no
+    /// batches run.
+    pub threads: Vec<usize>,
+    /// About how many rays, evenly chosen, to compare with exact arithmetic too.
+    pub exact: usize,
+}
+
+impl Agreement {
+    /// The four structures with default parameters, one thread, all rays against exact arithmetic:
+    /// for many small cases.
+    pub fn quick() -> Self {
+        Self {
+            structures: Structure::ALL.to_vec(),
+            isas: vec![Isa::detect()],
+            threads: vec![1],
+            exact: usize::MAX,
+        }
+    }
+
+    /// Every structure with default and with extreme parameters, one and two threads, all rays
+    /// against exact arithmetic.
+    pub fn thorough() -> Self {
+        let structures = Structure::ALL.into_iter().chain(variants()).collect();
+        Self { structures, threads: vec![1, 2], ..Self::quick() }
+    }
+
+    /// Compares, and panics at the first disagreement with all that is needed to replay it.
+    ///
+    /// # Panics
+    /// With the [`Disagreement`], if there is one.
+    #[track_caller]
+    pub fn assert(&self, mesh: &TriMesh<'_>, rays: &[Ray]) -> Report {
+        match self.check(mesh, rays) {
+            Ok(report) => report,
+            Err(disagreement) => panic!("{disagreement}"),
+        }
+    }
+
+    /// Compares.
+    ///
+    /// # Errors
+    /// The first disagreement.
+    pub fn check(&self, mesh: &TriMesh<'_>, rays: &[Ray]) -> Result<Report, Box<Disagreement>> {
+        let answers = brute::answers(mesh, rays);
+        let mut report = Report { rays: rays.len(), structures: self.structures.len(), comparisons: 0 };
+        let every = rays.len().div_ceil(self.exact.max(1)).max(1);
+        let sample = if self.exact == 0 { 0 } else { rays.len() };
+        for i in (0..sample).step_by(every) {
+            compare::with_exact(mesh, &rays[i], &answers[i], &exact::answer(mesh, &rays[i]))?;
+            report.comparisons += 1;
+        }
+        for &isa in &self.isas {
+            for &structure in &self.structures {
+                let subject = Subject::new(build(mesh, structure, isa)?, mesh, isa)?;
+                for (ray, answer) in rays.iter().zip(&answers) {
+                    report.comparisons += subject.one_by_one(ray, answer)?;
+                }
+                #[cfg(feature = "parallel")]
+                for &threads in &self.threads {
+                    report.comparisons += subject.batches(threads, rays, &answers)?;
+                }
+            }
+        }
+        Ok(report)
+    }
+}
+
+impl Default for Agreement {
+    fn default() -> Self {
+        Self::thorough()
+    }
+}
+
+/// How much was compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Report {
+    /// Rays.
+    pub rays: usize,
+    /// Structures.
+    pub structures: usize,
+    /// Answers that were compared.
+    pub comparisons: usize,
+}
+
+/// [`Agreement::assert`] with [`Agreement::thorough`].
+///
+/// # Panics
+/// With the [`Disagreement`], if there is one.
+#[track_caller]
+pub fn assert_agree(mesh: &TriMesh<'_>, rays: &[Ray]) -> Report {
+    Agreement::thorough().assert(mesh, rays)
+}
+
+/// [`Agreement::check`] with [`Agreement::thorough`].
+///
+/// # Errors
+/// The first disagreement.
+pub fn check_agree(mesh: &TriMesh<'_>, rays: &[Ray]) -> Result<Report, Box<Disagreement>> {
+    Agreement::thorough().check(mesh, rays)
+}
+
+fn build(mesh: &TriMesh<'_>, structure: Structure, isa: Isa) -> Result<Scene, Box<Disagreement>> {
+    let options = BuildOptions { structure, isa, ..Default::default() };
+    Scene::build(mesh, &options).map_err(|error| {
+        Disagreement::new(format!("{structure}, {isa:?}"), "build", &"a scene", &error.to_string())
+    })
+}
+
+/// Parameters away from the defaults: the paper's, no top grid, no depth, much depth.
+fn variants() -> Vec<Structure> {
+    let recursive = |threshold, divisions, top_grid| {
+        Structure::Recursive(RecursiveParams { threshold, divisions, top_grid })
+    };
+    let octree = |threshold, plane_weight| Structure::Octree(OctreeParams { threshold, plane_weight });
+    let uniform = |density| Structure::Uniform(UniformParams { density });
+    let hybrid = |density, levels| {
+        let Structure::Hybrid(params) = Structure::HYBRID else { unreachable!("it is a hybrid") };
+        Structure::Hybrid(HybridParams { density, levels, ..params })
+    };
+    vec![
+        recursive(3, 2, true),
+        recursive(19, 2, false),
+        recursive(10, 4, false),
+        recursive(8, 3, true),
+        octree(2, 15),
+        octree(4, 0),
+        uniform(0.05),
+        uniform(64.0),
+        hybrid(0.1, 0),
+        hybrid(8.0, 3),
+    ]
+}

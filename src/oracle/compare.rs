@@ -1,0 +1,180 @@
+//! Comparing one scene's answers, and those of brute force, with what they must be.
+
+use std::fmt::Debug;
+
+use super::disagreement::Disagreement;
+use super::scan::Answer;
+use crate::hit::Hit;
+use crate::lanes::Isa;
+use crate::mesh::TriMesh;
+use crate::query::{All, Any, Closest, Counting};
+use crate::ray::Ray;
+use crate::scene::{AllHits, Scene};
+
+/// Compares brute force with exact arithmetic: t and triangles bit for bit, u and v to within one
+/// unit in the last place plus 2^-24.
+pub(super) fn with_exact(
+    mesh: &TriMesh<'_>,
+    ray: &Ray,
+    brute: &Answer,
+    exact: &Answer,
+) -> Result<(), Box<Disagreement>> {
+    let near = brute.all.len() == exact.all.len() && brute.all.iter().zip(&exact.all).all(close);
+    if close((&brute.closest, &exact.closest)) && brute.occluded == exact.occluded && near {
+        return Ok(());
+    }
+    let prims = prims(brute).chain(prims(exact));
+    Err(Disagreement::new("brute force", "exact answers", exact, brute).on(ray, mesh, prims))
+}
+
+fn close((a, b): (&Hit, &Hit)) -> bool {
+    let within = |x: f32, y: f32| {
+        let unit = f64::from(y.abs().next_up()) - f64::from(y.abs());
+        (f64::from(x) - f64::from(y)).abs() <= unit + 0.5f64.powi(24)
+    };
+    a.prim == b.prim && a.t.to_bits() == b.t.to_bits() && within(a.u, b.u) && within(a.v, b.v)
+}
+
+/// A scene under test.
+pub(super) struct Subject<'a> {
+    scene: Scene,
+    mesh: &'a TriMesh<'a>,
+    name: String,
+}
+
+impl<'a> Subject<'a> {
+    /// Takes a scene whose own invariants hold.
+    pub(super) fn new(scene: Scene, mesh: &'a TriMesh<'a>, isa: Isa) -> Result<Self, Box<Disagreement>> {
+        let name = format!("{}, {isa:?}", scene.structure());
+        match scene.validate() {
+            Ok(_) => Ok(Self { scene, mesh, name }),
+            Err(violation) => Err(Disagreement::new(name, "validate", &"a valid structure", &violation)),
+        }
+    }
+
+    /// Every query on one ray. The number of comparisons.
+    pub(super) fn one_by_one(&self, ray: &Ray, answer: &Answer) -> Result<usize, Box<Disagreement>> {
+        self.closest("closest", ray, answer, self.scene.closest(ray))?;
+        self.occluded("occluded", ray, answer, self.scene.occluded(ray))?;
+
+        let mut query = Counting::new(Closest::new(ray.t_max));
+        self.scene.query(ray, &mut query);
+        self.closest("counted closest", ray, answer, query.query().hit())?;
+        let mut query = Counting::new(Any::new(ray.t_max));
+        self.scene.query(ray, &mut query);
+        self.occluded("counted occluded", ray, answer, query.query().found())?;
+
+        let len = answer.all.len();
+        let rooms = [len + 3, len, len / 2, len.saturating_sub(1)];
+        for room in rooms {
+            let mut hits = vec![Hit::MISS; room];
+            let result = self.scene.all(ray, &mut hits);
+            self.all("all", ray, answer, result, &hits)?;
+
+            let mut hits = vec![Hit::MISS; room];
+            let mut query = Counting::new(All::new(ray.t_max, &mut hits));
+            self.scene.query(ray, &mut query);
+            let result = AllHits { len: query.query().len(), complete: query.query().is_complete() };
+            self.all("counted all", ray, answer, result, &hits)?;
+        }
+        Ok(4 + 2 * rooms.len())
+    }
+
+    /// Every query on all rays at once in a pool of that many threads. The number of comparisons.
+    #[cfg(feature = "parallel")]
+    pub(super) fn batches(
+        &self,
+        threads: usize,
+        rays: &[Ray],
+        answers: &[Answer],
+    ) -> Result<usize, Box<Disagreement>> {
+        let mut closest = vec![Hit::MISS; rays.len()];
+        let mut occluded = vec![false; rays.len()];
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");
+        let lists = pool.install(|| {
+            self.scene.closest_batch(rays, &mut closest);
+            self.scene.occluded_batch(rays, &mut occluded);
+            self.scene.all_batch(rays)
+        });
+        let (ends, expected) = (lists.offsets.len(), rays.len() + 1);
+        if ends != expected {
+            return Err(Disagreement::new(&self.name, "number of offsets of all_batch", &expected, &ends));
+        }
+        let names = ["closest", "occluded", "all"].map(|query| format!("{query}_batch, {threads} threads"));
+        for (i, (ray, answer)) in rays.iter().zip(answers).enumerate() {
+            self.closest(&names[0], ray, answer, closest[i])?;
+            self.occluded(&names[1], ray, answer, occluded[i])?;
+            let hits = lists.hits.get(lists.offsets[i]..lists.offsets[i + 1]).unwrap_or(&[]);
+            if !equal(hits, &answer.all) {
+                return self.differ(&names[2], ray, answer, &answer.all, &hits, hits);
+            }
+        }
+        Ok(3 * rays.len())
+    }
+
+    fn closest(&self, query: &str, ray: &Ray, answer: &Answer, found: Hit) -> Result<(), Box<Disagreement>> {
+        match bits(&found) == bits(&answer.closest) {
+            true => Ok(()),
+            false => self.differ(query, ray, answer, &answer.closest, &found, &[found]),
+        }
+    }
+
+    fn occluded(
+        &self,
+        query: &str,
+        ray: &Ray,
+        answer: &Answer,
+        found: bool,
+    ) -> Result<(), Box<Disagreement>> {
+        match found == answer.occluded {
+            true => Ok(()),
+            false => self.differ(query, ray, answer, &answer.occluded, &found, &[]),
+        }
+    }
+
+    /// All hits in a buffer, which may have had room for the first ones only.
+    fn all(
+        &self,
+        query: &str,
+        ray: &Ray,
+        answer: &Answer,
+        result: AllHits,
+        buffer: &[Hit],
+    ) -> Result<(), Box<Disagreement>> {
+        let first = &answer.all[..buffer.len().min(answer.all.len())];
+        let expected = AllHits { len: first.len(), complete: first.len() == answer.all.len() };
+        let found = &buffer[..result.len.min(buffer.len())];
+        if result == expected && equal(found, first) {
+            return Ok(());
+        }
+        let query = format!("{query}, room for {}", buffer.len());
+        self.differ(&query, ray, answer, &(expected, first), &(result, found), found)
+    }
+
+    /// The error of a scene that answers `found`, with the triangles of `hits`.
+    fn differ<T>(
+        &self,
+        query: &str,
+        ray: &Ray,
+        answer: &Answer,
+        expected: &dyn Debug,
+        found: &dyn Debug,
+        hits: &[Hit],
+    ) -> Result<T, Box<Disagreement>> {
+        let prims = prims(answer).chain(hits.iter().map(|hit| hit.prim));
+        Err(Disagreement::new(&self.name, query, expected, found).on(ray, self.mesh, prims))
+    }
+}
+
+/// The triangles of an answer.
+fn prims(answer: &Answer) -> impl Iterator<Item = u32> {
+    answer.all.iter().map(|hit| hit.prim).chain([answer.closest.prim])
+}
+
+fn equal(a: &[Hit], b: &[Hit]) -> bool {
+    a.len() == b.len() && a.iter().map(bits).eq(b.iter().map(bits))
+}
+
+fn bits(hit: &Hit) -> [u32; 4] {
+    bytemuck::cast(*hit)
+}

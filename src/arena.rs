@@ -131,6 +131,11 @@ impl Grid {
         self.dims.iter().map(|&n| n as usize).product()
     }
 
+    /// The most voxels along an axis.
+    pub(crate) fn longest(&self) -> u32 {
+        self.dims[0].max(self.dims[1]).max(self.dims[2])
+    }
+
     /// The distance in `words` between neighbours along each axis.
     pub(crate) fn strides(&self) -> [u32; 3] {
         [1, self.dims[0], self.dims[0] * self.dims[1]]

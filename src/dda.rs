@@ -8,12 +8,13 @@
 //! the top grid; times count from the [`Path`]'s start, at a speed of one cell along the steepest axis.
 //!
 //! # Errors
-//! With S the size of the grid in cells, the start is off by 2^-52 S, the time of a plane by 2^-51 of
+//! With S the size of the grid in cells, the start is off by 2^-38 S at most, the time of a plane by 2^-51 of
 //! itself, and each step of `exit` by 2^-53; after 1024 steps a plane is misplaced by less than 2^-42 S.
 //! A component of the direction below 2^-60 of the largest is raised to that, which moves the ray by
 //! less than 2^-58 S within the grid. Voxels are built larger than that, see [`LIST_MARGIN`].
 
 use crate::arena::Grid;
+use crate::exact::{midpoint, two_product, two_sum};
 use crate::ray::Ray;
 
 /// The margin of the voxels of a structure that is walked in f64, relative to the size of the scene.
@@ -31,26 +32,37 @@ pub(crate) struct Path {
     pub(crate) width: [f64; 3],
     /// Bit `axis` is set where the axis is mirrored.
     pub(crate) octant: u32,
-    /// t of the ray where time is 0.
+    /// Time 0 is where t of the ray is `start`, and `delay` later.
     start: f64,
+    delay: f64,
     /// Time a unit of t.
     speed: f64,
 }
 
+/// How a ray meets a grid.
+pub(crate) enum Clip {
+    /// Certainly not.
+    Miss,
+    /// Along this path, if at all.
+    Path(Path),
+    /// Its origin is so far away (more than about 2^64 sizes of the grid) that f64 can't place it.
+    TooFar,
+}
+
 impl Path {
-    /// Clips a valid ray to the grid; `None` where it certainly meets nothing inside.
+    /// Clips a valid ray to the grid.
     #[inline]
-    pub(crate) fn new(ray: &Ray, grid: &Grid) -> Option<Self> {
+    pub(crate) fn new(ray: &Ray, grid: &Grid) -> Clip {
         // Bounds the error of a quotient of differences.
-        const SLACK: f64 = 1.0 / (1u64 << 48) as f64;
-        let (mut enter, mut leave) = (f64::from(ray.t_min), f64::from(ray.t_max));
+        const SLACK: f64 = 1.0 / (1u64 << 51) as f64;
+        let (mut enter, mut leave) = (f64::from(ray.t_min), rounds_to(ray.t_max));
         for axis in 0..3 {
             let size = f64::from(grid.dims[axis]) * grid.cell;
             let position = f64::from(ray.origin[axis]) - grid.lo[axis];
             let d = f64::from(ray.dir[axis]);
             if d == 0.0 {
                 if position < -SLACK * size || position > (1.0 + SLACK) * size {
-                    return None;
+                    return Clip::Miss;
                 }
                 continue;
             }
@@ -59,15 +71,17 @@ impl Path {
             enter = enter.max(near - SLACK * near.abs());
             leave = leave.min(far + SLACK * far.abs());
         }
-        (enter <= leave).then(|| Self::from(ray, grid, enter))
+        if enter <= leave { Self::from(ray, grid, enter) } else { Clip::Miss }
     }
 
     #[inline]
-    fn from(ray: &Ray, grid: &Grid, start: f64) -> Self {
+    fn from(ray: &Ray, grid: &Grid, start: f64) -> Clip {
+        /// Places in units of the grid's size up to which their rounding stays below the margin.
+        const FAR: f64 = 16384.0;
         let octant = ray.octant();
         let steepest = f64::from(ray.dir.abs().max_element());
         let least = steepest / (1u64 << 60) as f64;
-        Self {
+        let mut path = Self {
             origin: std::array::from_fn(|axis| {
                 let position = advance(ray, axis, start, grid.lo[axis]) / grid.cell;
                 if octant >> axis & 1 != 0 { f64::from(grid.dims[axis]) - position } else { position }
@@ -75,25 +89,39 @@ impl Path {
             width: std::array::from_fn(|axis| steepest / f64::from(ray.dir[axis]).abs().max(least)),
             octant,
             start,
+            delay: 0.0,
             speed: steepest / grid.cell,
+        };
+        let far = path.origin.iter().any(|&p| p.is_nan() || p.abs() > FAR * f64::from(grid.longest()));
+        if far {
+            return Clip::TooFar;
         }
+        // From far away, rounding puts the start before the grid.
+        path.delay = (0..3).map(|axis| -path.origin[axis] * path.width[axis]).fold(0.0, f64::max);
+        for axis in 0..3 {
+            path.origin[axis] += path.delay / path.width[axis];
+        }
+        Clip::Path(path)
     }
 
     /// The time of t, rounded up: no hit at `t` or before comes later.
     #[inline(always)]
     pub(crate) fn time(&self, t: f64) -> f64 {
-        let local = t - self.start;
-        (local + (t.abs() + self.start.abs()) * (2.0 * f64::EPSILON))
-            * self.speed
-            * (1.0 + 4.0 * f64::EPSILON)
+        let slack = (t.abs() + self.start.abs()) * (2.0 * f64::EPSILON);
+        (t - self.start + slack) * self.speed * (1.0 + 4.0 * f64::EPSILON) - self.delay
     }
+}
+
+/// The largest distance that rounds to `t` at most: hits count if their rounded distance does.
+#[inline(always)]
+pub(crate) fn rounds_to(t: f32) -> f64 {
+    midpoint(t, t.next_up())
 }
 
 /// origin - lo + t * dir along one axis, to 2^-52 of the result: in two terms, since for an origin far
 /// away the sum cancels.
 #[inline]
 fn advance(ray: &Ray, axis: usize, t: f64, lo: f64) -> f64 {
-    use crate::exact::{two_product, two_sum};
     let (position, position_error) = two_sum(f64::from(ray.origin[axis]), -lo);
     let (step, step_error) = two_product(t, f64::from(ray.dir[axis]));
     let (sum, sum_error) = two_sum(position, step);
@@ -174,7 +202,7 @@ mod tests {
     /// The voxels that a path through a grid of 1 x 1 x 1 cells visits.
     fn visited(ray: Ray, dims: [u32; 3]) -> Vec<[u32; 3]> {
         let grid = Grid::new([0.0; 3], 1.0, dims);
-        let Some(path) = Path::new(&ray, &grid) else { return vec![] };
+        let Clip::Path(path) = Path::new(&ray, &grid) else { return vec![] };
         let mut dda = Dda::new(&path, &grid);
         let strides = signed_strides(grid.strides(), path.octant);
         let mut voxels = vec![];
@@ -204,6 +232,14 @@ mod tests {
         assert!(visited(Ray::new([-1.0, 3.5, 0.5], [1.0, 0.0, 0.0]), [4, 3, 1]).is_empty());
         let behind = Ray::new([5.0, 1.5, 0.5], [1.0, 0.0, 0.0]);
         assert!(visited(behind, [4, 3, 1]).is_empty());
+    }
+
+    #[test]
+    fn too_far_is_told() {
+        let grid = Grid::new([0.0; 3], 1.0, [2, 2, 1]);
+        let from = |x: f32| Path::new(&Ray::new([-x, 0.5, 0.5], [1.0, 0.0, 0.0]), &grid);
+        assert!(matches!(from(1e18), Clip::Path(_)));
+        assert!(matches!(from(1e30), Clip::TooFar));
     }
 
     #[test]

@@ -135,7 +135,7 @@ macro_rules! dispatch {
 pub(crate) use dispatch;
 
 /// An instruction set for the queries. Every one gives the same bits.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct Isa(Level);
 
 impl Isa {
@@ -161,6 +161,29 @@ impl Isa {
 
     pub(crate) fn level(self) -> Level {
         self.0
+    }
+}
+
+impl std::fmt::Display for Isa {
+    /// `SSE2`, `SSE4.2`, `AVX2`, `AVX-512`, or what this processor's family has instead.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self.0 {
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Level::Sse2(_) => "SSE2",
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Level::Sse4_2(_) => "SSE4.2",
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Level::Avx2(_) => "AVX2",
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Level::Avx512(_) => "AVX-512",
+            _ => std::env::consts::ARCH,
+        })
+    }
+}
+
+impl std::fmt::Debug for Isa {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Isa({self})")
     }
 }
 

@@ -12,6 +12,8 @@ mod hit;
 mod lanes;
 mod mesh;
 mod model;
+#[cfg(feature = "oracle")]
+pub mod oracle;
 mod overlap;
 mod query;
 mod ray;

@@ -21,9 +21,9 @@
 use glam::{DVec3, Vec3};
 
 use crate::exact::{self, Expansion};
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, WIDTH};
 use crate::query::EdgeRule;
-use crate::ray::Ray;
+use crate::ray::{Ray, RayPacket};
 
 /// Where a line meets a triangle: as in [`crate::Hit`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -159,6 +159,23 @@ impl<L: Lanes> RayLanes<L> {
             dir: scale.direction(ray.dir).to_array().map(|x| lanes.splat(x)),
             t_min: lanes.splat(scale.time(ray.t_min)),
             t_max: lanes.splat(scale.time(ray.t_max)),
+        }
+    }
+}
+
+impl<L: Lanes> RayLanes<L> {
+    /// A ray a lane.
+    #[cfg_attr(not(feature = "oracle"), allow(dead_code, reason = "single rays need no packets"))]
+    #[inline(always)]
+    pub(crate) fn gather(lanes: L, packet: &RayPacket) -> Self {
+        let rays: [Ray; WIDTH] = std::array::from_fn(|lane| packet.get(lane));
+        let scales = rays.map(|ray| Scale::of(ray.dir));
+        let load = |f: &dyn Fn(usize) -> f32| lanes.load(&std::array::from_fn(f));
+        Self {
+            origin: std::array::from_fn(|axis| load(&|i| rays[i].origin[axis])),
+            dir: std::array::from_fn(|axis| load(&|i| scales[i].direction(rays[i].dir)[axis])),
+            t_min: load(&|i| scales[i].time(rays[i].t_min)),
+            t_max: load(&|i| scales[i].time(rays[i].t_max)),
         }
     }
 }

@@ -126,10 +126,6 @@ fn queries_of_one_oracle_agree() {
         let mesh = TriMesh::new(&vertices, &triangles).unwrap();
         let rays = hazards(&mesh, 7, 100);
         let answers = brute::answers(&mesh, &rays);
-        assert_eq!(brute::closest(&mesh, &rays), answers.iter().map(|a| a.closest).collect::<Vec<_>>());
-        assert_eq!(brute::any(&mesh, &rays), answers.iter().map(|a| a.occluded).collect::<Vec<_>>());
-        let all = brute::all(&mesh, &rays);
-        assert_eq!(all, answers.iter().map(|a| a.all.clone()).collect::<Vec<_>>());
         for (ray, answer) in rays.iter().zip(&answers) {
             assert_eq!(answer.occluded, answer.closest.is_hit());
             assert!(answer.all.first().is_none_or(|first| !first.precedes(&answer.closest)), "{ray:?}");

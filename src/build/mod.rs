@@ -54,7 +54,7 @@ fn finish<P: Policy>(
         Form::Bricks => (BRICK_MARGIN, 1.0 / f64::from(1u32 << 14), BRICK_LEVELS),
     };
     let grid = policy.grid();
-    let size = grid.cell * f64::from(grid.dims.into_iter().max().unwrap_or(1));
+    let size = grid.cell * f64::from(grid.longest());
     let limits = split::Limits {
         memory: options.memory_limit,
         references: (1 << 16) + 64 * analysis.triangles.len(),

@@ -131,7 +131,7 @@ pub fn check_agree(mesh: &TriMesh<'_>, rays: &[Ray]) -> Result<Report, Box<Disag
 fn build(mesh: &TriMesh<'_>, structure: Structure, isa: Isa) -> Result<Scene, Box<Disagreement>> {
     let options = BuildOptions { structure, isa, ..Default::default() };
     Scene::build(mesh, &options).map_err(|error| {
-        Disagreement::new(format!("{structure}, {isa:?}"), "build", &"a scene", &error.to_string())
+        Disagreement::new(format!("{structure}, {isa}"), "build", &"a scene", &error.to_string())
     })
 }
 

@@ -1,44 +1,52 @@
 //! Brute force with the library's own kernel: the same bits as every structure must give.
+//!
+//! Eight rays against one triangle at a time, the other direction of the kernel than in a structure.
 
-use glam::Vec3;
-
-use super::scan::{self, Answer};
+use super::scan::Answer;
 use crate::hit::Hit;
+use crate::lanes::{Isa, Lanes, dispatch};
 use crate::mesh::TriMesh;
 use crate::query::EdgeRule;
-use crate::ray::Ray;
+use crate::ray::{Ray, RayPacket};
+use crate::triangle::{RayLanes, candidates, intersect};
 
-/// The closest hit of each ray, or [`Hit::MISS`].
-pub fn closest(mesh: &TriMesh<'_>, rays: &[Ray]) -> Vec<Hit> {
-    map(rays, |ray| scan::closest(mesh, ray, kernel))
-}
-
-/// Whether there is any hit, for each ray.
-pub fn any(mesh: &TriMesh<'_>, rays: &[Ray]) -> Vec<bool> {
-    map(rays, |ray| scan::any(mesh, ray, kernel))
-}
-
-/// All hits of each ray, sorted by (t, triangle).
-pub fn all(mesh: &TriMesh<'_>, rays: &[Ray]) -> Vec<Vec<Hit>> {
-    map(rays, |ray| scan::all(mesh, ray, kernel))
-}
-
-/// The answers to all three queries, in one scan for each ray.
+/// The answers to all three queries for each ray.
 pub fn answers(mesh: &TriMesh<'_>, rays: &[Ray]) -> Vec<Answer> {
-    map(rays, |ray| scan::answer(mesh, ray, kernel))
+    let isa = Isa::detect();
+    let packets: Vec<&[Ray]> = rays.chunks(RayPacket::LEN).collect();
+    map(&packets, |rays| dispatch!(isa, lanes => packet(lanes, mesh, rays))).concat()
 }
 
-fn kernel(ray: &Ray, corners: [Vec3; 3], rule: EdgeRule) -> Option<(f32, f32, f32)> {
-    super::exact::kernel(ray, corners, rule)
+#[inline(always)]
+fn packet<L: Lanes>(lanes: L, mesh: &TriMesh<'_>, rays: &[Ray]) -> Vec<Answer> {
+    let ray_lanes = RayLanes::gather(lanes, &RayPacket::new(rays));
+    let valid: u32 = (0..).zip(rays).map(|(lane, ray)| u32::from(ray.is_valid()) << lane).sum();
+    let mut closed = vec![Vec::new(); rays.len()];
+    let mut crossings = closed.clone();
+    for prim in 0..mesh.len() as u32 {
+        let corners = mesh.corners(prim);
+        let splat = corners.map(|corner| corner.to_array().map(|x| lanes.splat(x)));
+        let mut bits = valid & candidates(lanes, &ray_lanes, splat);
+        while bits != 0 {
+            let lane = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            let ray = &rays[lane];
+            for (rule, hits) in [(EdgeRule::Closed, &mut closed), (EdgeRule::Crossing, &mut crossings)] {
+                let at = intersect(ray, corners, rule).filter(|at| ray.t_min < at.t && at.t <= ray.t_max);
+                hits[lane].extend(at.map(|at| Hit { t: at.t, u: at.u, v: at.v, prim }));
+            }
+        }
+    }
+    closed.into_iter().zip(crossings).map(|(closed, all)| Answer::of(closed, all)).collect()
 }
 
 #[cfg(feature = "parallel")]
-fn map<T: Send>(rays: &[Ray], f: impl Fn(&Ray) -> T + Sync + Send) -> Vec<T> {
+fn map<A: Sync, B: Send>(items: &[A], f: impl Fn(&A) -> B + Sync + Send) -> Vec<B> {
     use rayon::prelude::*;
-    rays.par_iter().map(f).collect()
+    items.par_iter().map(f).collect()
 }
 
 #[cfg(not(feature = "parallel"))]
-fn map<T>(rays: &[Ray], f: impl Fn(&Ray) -> T) -> Vec<T> {
-    rays.iter().map(f).collect()
+fn map<A, B>(items: &[A], f: impl Fn(&A) -> B) -> Vec<B> {
+    items.iter().map(f).collect()
 }

@@ -45,7 +45,7 @@ pub(super) struct Subject<'a> {
 impl<'a> Subject<'a> {
     /// Takes a scene whose own invariants hold.
     pub(super) fn new(scene: Scene, mesh: &'a TriMesh<'a>, isa: Isa) -> Result<Self, Box<Disagreement>> {
-        let name = format!("{}, {isa:?}", scene.structure());
+        let name = format!("{}, {isa}", scene.structure());
         match scene.validate() {
             Ok(_) => Ok(Self { scene, mesh, name }),
             Err(violation) => Err(Disagreement::new(name, "validate", &"a valid structure", &violation)),

@@ -34,8 +34,7 @@ type Vector = [BigInt; 3];
 /// Where the line of a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactHit {
-    /// The exact distance rounded to the nearest f32, ties to even; zero is +0.0 unless it is rounded
-    /// from a negative number.
+    /// The exact distance rounded to the nearest f32, ties to even; a zero is positive.
     pub t: f32,
     /// Barycentric coordinate of the second vertex, with a relative error below 2^-52.
     pub u: f64,
@@ -69,7 +68,7 @@ pub fn intersect(ray: &Ray, corners: [Vec3; 3], rule: EdgeRule) -> Option<ExactH
         (Sign::NoSign, EdgeRule::Crossing) => moved_sign(&dir, edges[i]) == det.sign(),
         (sign, _) => sign == det.sign(),
     });
-    let t = rational::to_f32(&dot(&sub(v0, origin), &normal), &det, scale - dir_scale);
+    let t = rational::to_f32(&dot(&sub(v0, origin), &normal), &det, scale - dir_scale) + 0.0;
     let hit = ExactHit { t, u: rational::to_f64(&w[1], &det), v: rational::to_f64(&w[2], &det) };
     (inside && t.is_finite()).then_some(hit)
 }

@@ -19,6 +19,14 @@ pub struct Answer {
     pub all: Vec<Hit>,
 }
 
+impl Answer {
+    /// The answers that follow from all hits under each edge rule.
+    pub(super) fn of(closed: Vec<Hit>, crossings: Vec<Hit>) -> Self {
+        let closest = first(closed.into_iter());
+        Self { closest, occluded: closest.is_hit(), all: sorted(crossings.into_iter()) }
+    }
+}
+
 /// (t, u, v) where the line of a ray meets a triangle.
 pub(super) trait Kernel: Fn(&Ray, [Vec3; 3], EdgeRule) -> Option<(f32, f32, f32)> {}
 

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::Visit;
 use crate::arena::Arena;
-use crate::exact::midpoint;
+use crate::dda::rounds_to;
 use crate::hit::Hit;
 use crate::lanes::Lanes;
 use crate::query::Query;
@@ -52,6 +52,13 @@ impl<'a, L: Lanes, Q: Query> LeafTest<'a, L, Q> {
         let scale = Scale::of(ray.dir);
         let ray_lanes = RayLanes::splat(lanes, ray, scale);
         Self { lanes, arena, ray, scale, ray_lanes, mailbox: Mailbox::EMPTY, query }
+    }
+
+    /// Tests all clusters, for a ray that no walk can follow.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn every_cluster(&mut self) -> ControlFlow<()> {
+        (0..self.arena.clusters.len() as u32).try_for_each(|index| self.cluster(index))
     }
 
     /// Tests one cluster, unless that was done just now.
@@ -104,10 +111,8 @@ impl<L: Lanes, Q: Query> Visit for LeafTest<'_, L, Q> {
         ControlFlow::Continue(())
     }
 
-    /// A hit counts if its t, rounded, is at most the query's.
     #[inline(always)]
     fn limit(&self) -> f64 {
-        let t_max = self.query.t_max();
-        midpoint(t_max, t_max.next_up())
+        rounds_to(self.query.t_max())
     }
 }

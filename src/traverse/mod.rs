@@ -13,7 +13,7 @@ mod uniform;
 use std::ops::ControlFlow;
 
 use crate::arena::{Arena, Form};
-use crate::dda::Path;
+use crate::dda::{Clip, Path};
 use crate::lanes::Lanes;
 use crate::query::Query;
 use crate::ray::Ray;
@@ -49,8 +49,15 @@ pub(crate) fn query<L: Lanes, Q: Query>(lanes: L, arena: &Arena, walk: Walk, ray
     if !ray.is_valid() {
         return;
     }
-    let Some(path) = Path::new(ray, &arena.grid) else { return };
+    let clip = Path::new(ray, &arena.grid);
+    if let Clip::Miss = clip {
+        return;
+    }
     let mut leaf = LeafTest::new(lanes, arena, ray, query);
+    let Clip::Path(path) = clip else {
+        let _ = leaf.every_cluster();
+        return;
+    };
     // The walks end by running out of voxels or by `Break`; neither is news.
     let _ = match (arena.form, walk) {
         (Form::Bricks, _) => hybrid::walk(arena, &path, &mut leaf),

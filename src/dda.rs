@@ -14,6 +14,7 @@
 //! less than 2^-58 S within the grid. Voxels are built larger than that, see [`LIST_MARGIN`].
 
 use crate::arena::Grid;
+use crate::descent::first_exit;
 use crate::exact::{midpoint, two_product, two_sum};
 use crate::ray::Ray;
 
@@ -171,18 +172,6 @@ impl Dda {
         self.exit[axis] += width[axis];
         self.voxel = self.voxel.wrapping_add_signed(stride[axis]);
         true
-    }
-}
-
-/// The axis of the least of three times.
-#[inline(always)]
-pub(crate) fn first_exit([x, y, z]: &[f64; 3]) -> usize {
-    if x <= y {
-        if x <= z { 0 } else { 2 }
-    } else if y <= z {
-        1
-    } else {
-        2
     }
 }
 

@@ -7,6 +7,7 @@ mod build;
 pub mod builtin;
 mod cluster;
 mod dda;
+pub mod descent;
 mod exact;
 mod hit;
 mod lanes;

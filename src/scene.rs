@@ -2,12 +2,13 @@
 
 use crate::arena::Arena;
 use crate::build::{self, BuildError, BuildOptions, Structure};
+use crate::descent::Walk;
 use crate::hit::Hit;
 use crate::lanes::dispatch;
 use crate::mesh::TriMesh;
 use crate::query::{All, Any, Closest, Query};
 use crate::ray::Ray;
-use crate::traverse::{self, Walk};
+use crate::traverse;
 use crate::validate::{self, Statistics, Violation};
 
 /// Triangles in a voxel structure, ready for queries.
@@ -88,7 +89,7 @@ impl Scene {
     /// Runs any query.
     pub fn query<Q: Query>(&self, ray: &Ray, query: &mut Q) {
         let walk = match self.options.structure {
-            Structure::Octree(_) => Walk::Octree,
+            Structure::Octree(_) => self.options.walk,
             _ => Walk::General,
         };
         dispatch!(self.options.isa, lanes => traverse::query(lanes, &self.arena, walk, ray, query));

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const LAYERS: &[(&str, &[&str])] = &[
     ("numbers", &["lanes", "aabb", "exact"]),
     ("vocabulary", &["ray", "hit", "query", "mesh", "model"]),
-    ("pieces", &["triangle", "cluster", "overlap", "arena", "dda", "validate"]),
+    ("pieces", &["triangle", "cluster", "overlap", "arena", "descent", "dda", "validate"]),
     ("phases", &["build", "traverse"]),
     ("surface", &["scene", "stream"]),
     ("edges", &["builtin", "obj", "oracle"]),
@@ -23,6 +23,7 @@ const WITHIN: &[(&str, &str)] = &[
     ("overlap", "triangle"),
     ("arena", "cluster"),
     ("dda", "arena"),
+    ("dda", "descent"),
     ("validate", "arena"),
     ("validate", "cluster"),
     ("stream", "scene"),

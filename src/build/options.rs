@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::RangeInclusive;
 
 use crate::arena::BRICK_LEVELS;
+use crate::descent::Walk;
 use crate::lanes::Isa;
 
 /// Parameters of the uniform grid (paper, section 3.1).
@@ -131,12 +132,14 @@ pub struct BuildOptions {
     pub memory_limit: usize,
     /// The instruction set of the queries; answers do not depend on it.
     pub isa: Isa,
+    /// How an octree is walked; answers do not depend on it.
+    pub walk: Walk,
 }
 
 impl Default for BuildOptions {
     /// The hybrid, at most 16 GiB, the best instruction set of this processor.
     fn default() -> Self {
-        Self { structure: Structure::HYBRID, memory_limit: 16 << 30, isa: Isa::detect() }
+        Self { structure: Structure::HYBRID, memory_limit: 16 << 30, isa: Isa::detect(), walk: Walk::Special }
     }
 }
 

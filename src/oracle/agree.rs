@@ -32,6 +32,8 @@ pub struct Agreement {
     pub threads: Vec<usize>,
     /// About how many rays, evenly chosen, to compare with exact arithmetic too.
     pub exact: usize,
+    /// About how many rays, evenly chosen, to run with counting queries and too small buffers too.
+    pub decorated: usize,
 }
 
 impl Agreement {
@@ -43,14 +45,15 @@ impl Agreement {
             isas: vec![Isa::detect()],
             threads: vec![1],
             exact: usize::MAX,
+            decorated: usize::MAX,
         }
     }
 
-    /// Every structure with default and with extreme parameters, one and two threads, all rays
-    /// against exact arithmetic.
+    /// Every structure with default and with extreme parameters, every instruction set, one and two
+    /// threads, all rays against exact arithmetic.
     pub fn thorough() -> Self {
         let structures = Structure::ALL.into_iter().chain(variants()).collect();
-        Self { structures, threads: vec![1, 2], ..Self::quick() }
+        Self { structures, threads: vec![1, 2], isas: Isa::available(), ..Self::quick() }
     }
 
     /// Compares, and panics at the first disagreement with all that is needed to replay it.
@@ -72,9 +75,7 @@ impl Agreement {
     pub fn check(&self, mesh: &TriMesh<'_>, rays: &[Ray]) -> Result<Report, Box<Disagreement>> {
         let answers = brute::answers(mesh, rays);
         let mut report = Report { rays: rays.len(), structures: self.structures.len(), comparisons: 0 };
-        let every = rays.len().div_ceil(self.exact.max(1)).max(1);
-        let sample = if self.exact == 0 { 0 } else { rays.len() };
-        for i in (0..sample).step_by(every) {
+        for i in sample(rays.len(), self.exact) {
             compare::with_exact(mesh, &rays[i], &answers[i], &exact::answer(mesh, &rays[i]))?;
             report.comparisons += 1;
         }
@@ -83,6 +84,9 @@ impl Agreement {
                 let subject = Subject::new(build(mesh, structure, isa)?, mesh, isa)?;
                 for (ray, answer) in rays.iter().zip(&answers) {
                     report.comparisons += subject.one_by_one(ray, answer)?;
+                }
+                for i in sample(rays.len(), self.decorated) {
+                    report.comparisons += subject.decorated(&rays[i], &answers[i])?;
                 }
                 #[cfg(feature = "parallel")]
                 for &threads in &self.threads {
@@ -126,6 +130,12 @@ pub fn assert_agree(mesh: &TriMesh<'_>, rays: &[Ray]) -> Report {
 /// The first disagreement.
 pub fn check_agree(mesh: &TriMesh<'_>, rays: &[Ray]) -> Result<Report, Box<Disagreement>> {
     Agreement::thorough().check(mesh, rays)
+}
+
+/// About `n` of the indices below `len`, evenly chosen.
+fn sample(len: usize, n: usize) -> impl Iterator<Item = usize> {
+    let end = if n == 0 { 0 } else { len };
+    (0..end).step_by(len.div_ceil(n.max(1)).max(1))
 }
 
 fn build(mesh: &TriMesh<'_>, structure: Structure, isa: Isa) -> Result<Scene, Box<Disagreement>> {

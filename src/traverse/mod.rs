@@ -14,6 +14,7 @@ use std::ops::ControlFlow;
 
 use crate::arena::{Arena, Form};
 use crate::dda::{Clip, Path};
+use crate::descent::Walk;
 use crate::lanes::Lanes;
 use crate::query::Query;
 use crate::ray::Ray;
@@ -34,15 +35,6 @@ pub(crate) trait Visit {
     fn limit(&self) -> f64;
 }
 
-/// The code that walks a structure, where there is a choice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Walk {
-    /// Grids of any depth and N.
-    General,
-    /// N = 2 without a top grid.
-    Octree,
-}
-
 /// Runs a query over a structure.
 #[inline(always)]
 pub(crate) fn query<L: Lanes, Q: Query>(lanes: L, arena: &Arena, walk: Walk, ray: &Ray, query: &mut Q) {
@@ -61,7 +53,7 @@ pub(crate) fn query<L: Lanes, Q: Query>(lanes: L, arena: &Arena, walk: Walk, ray
     // The walks end by running out of voxels or by `Break`; neither is news.
     let _ = match (arena.form, walk) {
         (Form::Bricks, _) => hybrid::walk(arena, &path, &mut leaf),
-        (Form::Lists { divisions: 2 }, Walk::Octree) => octree::walk(arena, &path, &mut leaf),
+        (Form::Lists { divisions: 2 }, Walk::Special) => octree::walk(arena, &path, &mut leaf),
         (Form::Lists { divisions }, _) => match divisions {
             1 => uniform::walk(arena, &path, &mut leaf),
             2 => recursive::walk::<2, _>(arena, &path, &mut leaf),

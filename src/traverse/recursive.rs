@@ -1,44 +1,41 @@
 //! The walk through a recursive regular grid, for any N (paper, sections 3.2 and 3.3).
 //!
-//! One [`Dda`] a level. Descending into a divided voxel is the paper's general code: divide the width
-//! by N, divide the remaining time by it and truncate for the number of planes left, clamp, multiply by
-//! the strides. A path that leaves a voxel for a neighbour that is divided as deeply finds the
-//! coefficients of the levels below still valid: along the axis that it crosses it enters the first
-//! voxel of the next block, and on the others nothing changes.
+//! A [`Dda`] over the top grid, and below it one [`General`] part a level. A path that leaves a voxel
+//! for a neighbour that is divided as deeply finds the coefficients of the levels below still valid:
+//! along the axis that it crosses it enters the first part, and on the others nothing changes.
 
 use std::ops::ControlFlow;
 
 use super::Visit;
 use crate::arena::{Arena, LIST_LEVELS, Voxel};
 use crate::dda::{Dda, Path, signed_strides};
+use crate::descent::{General, first_exit};
 
-/// The top level and those below it.
-const LEVELS: usize = LIST_LEVELS as usize + 1;
+const LEVELS: usize = LIST_LEVELS as usize;
 
-/// A voxel of a block at one level.
+/// A part of a divided voxel.
 #[derive(Clone, Copy)]
-struct Level {
-    dda: Dda,
-    width: [f64; 3],
-    /// The index of the block's first word.
+struct Level<const N: u32> {
+    part: General<N>,
+    /// The index of the divided voxel's first word.
     first: u32,
 }
 
 #[inline(always)]
 pub(crate) fn walk<const N: u32, V: Visit>(arena: &Arena, path: &Path, visit: &mut V) -> ControlFlow<()> {
-    let top_strides = signed_strides(arena.grid.strides(), path.octant);
-    let strides = signed_strides([1, N, N * N], path.octant);
-    let top = Level { dda: Dda::new(path, &arena.grid), width: path.width, first: 0 };
-    let mut levels = [top; LEVELS];
-    let mut depth = 0;
-    // The deepest level whose coefficients belong to the voxel at hand.
-    let mut valid = 0;
+    let strides = signed_strides(arena.grid.strides(), path.octant);
+    let rises = !path.octant & 7;
+    let mut top = Dda::new(path, &arena.grid);
+    let mut levels = [Level { part: General::<N>::whole(top.exit, path.width), first: 0 }; LEVELS];
+    // The number of levels below the top, and of those whose coefficients belong to the voxel at hand.
+    let (mut depth, mut valid) = (0, 0);
     let mut time = 0.0;
     let mut limit = path.time(visit.limit());
     loop {
         visit.enter();
-        let Level { dda, first, .. } = &levels[depth];
-        let word = &arena.words[(first + dda.voxel) as usize];
+        let index =
+            if depth == 0 { top.voxel } else { levels[depth - 1].first + levels[depth - 1].part.voxel };
+        let word = &arena.words[index as usize];
         visit.read(word);
         match word.get() {
             Voxel::Empty => {}
@@ -48,51 +45,29 @@ pub(crate) fn walk<const N: u32, V: Visit>(arena: &Arena, path: &Path, visit: &m
             }
             Voxel::Node(first) => {
                 if depth == valid {
-                    levels[depth + 1] = descend::<N>(&levels[depth], time, path.octant);
+                    let whole = match depth {
+                        0 => General::whole(top.exit, path.width),
+                        _ => levels[depth - 1].part,
+                    };
+                    levels[depth].part = whole.descend(time, rises);
                     valid += 1;
                 }
-                depth += 1;
                 levels[depth].first = first;
+                depth += 1;
                 continue;
             }
         }
-        let axis = levels[depth].dda.axis();
-        time = levels[depth].dda.exit[axis];
+        let axis = if depth == 0 { top.axis() } else { first_exit(&levels[depth - 1].part.exit) };
+        time = if depth == 0 { top.exit[axis] } else { levels[depth - 1].part.exit[axis] };
         if time > limit {
             return ControlFlow::Continue(());
         }
         valid = depth;
-        while depth > 0 {
-            let Level { dda, width, .. } = &mut levels[depth];
-            if dda.step(axis, width, &strides) {
-                break;
-            }
-            // On to the first voxel of the next block.
-            dda.left[axis] = N - 1;
-            dda.exit[axis] += width[axis];
-            dda.voxel = dda.voxel.wrapping_add_signed(-strides[axis] * (N as i32 - 1));
+        while depth > 0 && !levels[depth - 1].part.step(axis, rises) {
             depth -= 1;
         }
-        if depth == 0 && !levels[0].dda.step(axis, &path.width, &top_strides) {
+        if depth == 0 && !top.step(axis, &path.width, &strides) {
             return ControlFlow::Continue(());
         }
     }
-}
-
-/// The voxel of a divided one in which the path is at `time`: the paper's general descent.
-#[inline(always)]
-fn descend<const N: u32>(parent: &Level, time: f64, octant: u32) -> Level {
-    let increments = [1, N, N * N];
-    let mut level = Level { dda: Dda { voxel: 0, ..parent.dda }, width: parent.width, first: 0 };
-    for axis in 0..3 {
-        let width = parent.width[axis] / f64::from(N);
-        let remain = parent.dda.exit[axis] - time;
-        let left = ((remain / width) as u32).min(N - 1);
-        level.width[axis] = width;
-        level.dda.exit[axis] = parent.dda.exit[axis] - f64::from(left) * width;
-        level.dda.left[axis] = left;
-        let index = if octant >> axis & 1 != 0 { left } else { N - 1 - left };
-        level.dda.voxel += index * increments[axis];
-    }
-    level
 }

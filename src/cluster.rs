@@ -7,15 +7,25 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use crate::aabb::Aabb;
-use crate::lanes::{Lanes, WIDTH};
-use crate::triangle::Vec3Lanes;
+use crate::lanes::{Isa, Lanes, WIDTH, dispatch};
+use crate::ray::Ray;
+use crate::triangle::{RayLanes, Scale, Vec3Lanes, candidates};
 
-/// Up to eight triangles.
+/// Up to eight triangles, for one ray at a time.
 ///
-/// Lanes beyond the last triangle repeat the first one, with the id [`Cluster::NO_TRIANGLE`].
+/// 320 bytes, aligned to 64. Lanes beyond the last triangle repeat the first one, with the id
+/// [`Cluster::NO_TRIANGLE`].
+///
+/// ```
+/// use glam::Vec3;
+/// use octogrid::{Cluster, Isa, Ray};
+/// let cluster = Cluster::new(&[(7, [Vec3::ZERO, Vec3::X, Vec3::Y])]);
+/// let ray = Ray::new([0.2, 0.2, 1.0], [0.0, 0.0, -1.0]);
+/// assert_eq!(cluster.candidates(Isa::detect(), &ray) & cluster.occupied(), 1);
+/// ```
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(64))]
-pub(crate) struct Cluster {
+pub struct Cluster {
     /// Coordinates by corner, axis and lane.
     corners: [[[f32; WIDTH]; 3]; 3],
     ids: [u32; WIDTH],
@@ -25,11 +35,14 @@ const _: () = assert!(size_of::<Cluster>() == 320);
 
 impl Cluster {
     /// The id of a lane without a triangle.
-    pub(crate) const NO_TRIANGLE: u32 = u32::MAX;
+    pub const NO_TRIANGLE: u32 = u32::MAX;
 
-    /// Gathers one to eight triangles.
-    pub(crate) fn new(triangles: &[(u32, [Vec3; 3])]) -> Self {
-        debug_assert!((1..=WIDTH).contains(&triangles.len()));
+    /// Gathers one to eight triangles with their ids.
+    ///
+    /// # Panics
+    /// Where there are none or more than eight.
+    pub fn new(triangles: &[(u32, [Vec3; 3])]) -> Self {
+        assert!((1..=WIDTH).contains(&triangles.len()), "a cluster holds one to eight triangles");
         let mut cluster = Self { corners: [[[0.0; WIDTH]; 3]; 3], ids: [Self::NO_TRIANGLE; WIDTH] };
         for lane in 0..WIDTH {
             let (id, corners) = triangles.get(lane).unwrap_or(&triangles[0]);
@@ -46,18 +59,31 @@ impl Cluster {
     }
 
     /// The ids of the triangles; [`Cluster::NO_TRIANGLE`] in lanes that have none.
-    pub(crate) fn ids(&self) -> &[u32; WIDTH] {
+    pub fn ids(&self) -> &[u32; WIDTH] {
         &self.ids
     }
 
     /// The lanes that hold a triangle, as bits.
-    pub(crate) fn occupied(&self) -> u8 {
+    pub fn occupied(&self) -> u8 {
         (0..WIDTH).map(|lane| u8::from(self.ids[lane] != Self::NO_TRIANGLE) << lane).sum()
     }
 
+    /// The lanes whose triangle a valid ray may meet within its interval, as bits.
+    ///
+    /// Never misses one for which [`intersect`](crate::intersect) finds a hit, and seldom names another.
+    pub fn candidates(&self, isa: Isa, ray: &Ray) -> u8 {
+        dispatch!(isa, lanes => {
+            let ray = RayLanes::splat(lanes, ray, Scale::of(ray.dir));
+            candidates(lanes, &ray, self.lanes(lanes)) as u8
+        })
+    }
+
     /// The corners of the triangle in one lane.
+    ///
+    /// # Panics
+    /// Where `lane` is 8 or more.
     #[inline(always)]
-    pub(crate) fn triangle(&self, lane: usize) -> [Vec3; 3] {
+    pub fn triangle(&self, lane: usize) -> [Vec3; 3] {
         self.corners.each_ref().map(|c| Vec3::new(c[0][lane], c[1][lane], c[2][lane]))
     }
 

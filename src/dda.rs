@@ -53,7 +53,7 @@ pub(crate) enum Clip {
 impl Path {
     /// Clips a valid ray to the grid.
     #[inline]
-    pub(crate) fn new(ray: &Ray, grid: &Grid) -> Clip {
+    pub(crate) fn clip(ray: &Ray, grid: &Grid) -> Clip {
         // Bounds the error of a quotient of differences.
         const SLACK: f64 = 1.0 / (1u64 << 51) as f64;
         let (mut enter, mut leave) = (f64::from(ray.t_min), rounds_to(ray.t_max));
@@ -191,7 +191,7 @@ mod tests {
     /// The voxels that a path through a grid of 1 x 1 x 1 cells visits.
     fn visited(ray: Ray, dims: [u32; 3]) -> Vec<[u32; 3]> {
         let grid = Grid::new([0.0; 3], 1.0, dims);
-        let Clip::Path(path) = Path::new(&ray, &grid) else { return vec![] };
+        let Clip::Path(path) = Path::clip(&ray, &grid) else { return vec![] };
         let mut dda = Dda::new(&path, &grid);
         let strides = signed_strides(grid.strides(), path.octant);
         let mut voxels = vec![];
@@ -226,7 +226,7 @@ mod tests {
     #[test]
     fn too_far_is_told() {
         let grid = Grid::new([0.0; 3], 1.0, [2, 2, 1]);
-        let from = |x: f32| Path::new(&Ray::new([-x, 0.5, 0.5], [1.0, 0.0, 0.0]), &grid);
+        let from = |x: f32| Path::clip(&Ray::new([-x, 0.5, 0.5], [1.0, 0.0, 0.0]), &grid);
         assert!(matches!(from(1e18), Clip::Path(_)));
         assert!(matches!(from(1e30), Clip::TooFar));
     }

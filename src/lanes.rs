@@ -1,8 +1,7 @@
 //! SIMD lanes: the only file that names the SIMD crates' backends.
 //!
 //! A kernel is written once against [`Lanes`] and runs on eight lanes of every instruction set.
-//! `dispatch` picks the set at run time, once a query or batch; [`Portable`] is the same trait over
-//! `wide`, whose instruction set is fixed at compile time.
+//! `dispatch` picks the set at run time, once a query or batch.
 //!
 //! Lanes are used where an error bound is known, never for final answers, so that it does not matter
 //! whether an instruction set fuses a multiplication with an addition.
@@ -81,48 +80,6 @@ impl<S: Simd> Lanes for Dispatched<S> {
     }
 }
 
-/// Lanes of the instruction set that the crate is compiled for.
-#[derive(Clone, Copy)]
-pub(crate) struct Portable;
-
-impl Lanes for Portable {
-    type F32 = wide::f32x8;
-    type Mask = wide::f32x8;
-
-    #[inline(always)]
-    fn splat(self, x: f32) -> wide::f32x8 {
-        wide::f32x8::splat(x)
-    }
-    #[inline(always)]
-    fn load(self, x: &[f32; WIDTH]) -> wide::f32x8 {
-        wide::f32x8::from(*x)
-    }
-    #[inline(always)]
-    fn abs(self, x: wide::f32x8) -> wide::f32x8 {
-        x.abs()
-    }
-    #[inline(always)]
-    fn sign(self, x: wide::f32x8) -> wide::f32x8 {
-        self.splat(1.0).copysign(x)
-    }
-    #[inline(always)]
-    fn min(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
-        a.fast_min(b)
-    }
-    #[inline(always)]
-    fn max(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
-        a.fast_max(b)
-    }
-    #[inline(always)]
-    fn less(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
-        a.simd_lt(b)
-    }
-    #[inline(always)]
-    fn bits(self, mask: wide::f32x8) -> u32 {
-        mask.to_bitmask()
-    }
-}
-
 /// Runs `$body` with `$lanes` bound to the lanes of the instruction set `$isa`.
 macro_rules! dispatch {
     ($isa:expr, $lanes:ident => $body:expr) => {
@@ -190,6 +147,56 @@ impl std::fmt::Debug for Isa {
 impl PartialEq for Isa {
     fn eq(&self, other: &Self) -> bool {
         std::mem::discriminant(&self.0) == std::mem::discriminant(&other.0)
+    }
+}
+
+#[cfg(test)]
+pub(crate) use portable::Portable;
+
+/// The same over `wide`, as a reference for tests: compiled for one instruction set, not dispatched.
+#[cfg(test)]
+mod portable {
+    use super::{Lanes, WIDTH};
+
+    #[derive(Clone, Copy)]
+    pub(crate) struct Portable;
+
+    impl Lanes for Portable {
+        type F32 = wide::f32x8;
+        type Mask = wide::f32x8;
+
+        #[inline(always)]
+        fn splat(self, x: f32) -> wide::f32x8 {
+            wide::f32x8::splat(x)
+        }
+        #[inline(always)]
+        fn load(self, x: &[f32; WIDTH]) -> wide::f32x8 {
+            wide::f32x8::from(*x)
+        }
+        #[inline(always)]
+        fn abs(self, x: wide::f32x8) -> wide::f32x8 {
+            x.abs()
+        }
+        #[inline(always)]
+        fn sign(self, x: wide::f32x8) -> wide::f32x8 {
+            self.splat(1.0).copysign(x)
+        }
+        #[inline(always)]
+        fn min(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
+            a.fast_min(b)
+        }
+        #[inline(always)]
+        fn max(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
+            a.fast_max(b)
+        }
+        #[inline(always)]
+        fn less(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
+            a.simd_lt(b)
+        }
+        #[inline(always)]
+        fn bits(self, mask: wide::f32x8) -> u32 {
+            mask.to_bitmask()
+        }
     }
 }
 

@@ -28,6 +28,7 @@ mod validate;
 pub use build::{
     BuildError, BuildOptions, HybridParams, OctreeParams, RecursiveParams, Structure, UniformParams,
 };
+pub use cluster::Cluster;
 pub use hit::Hit;
 pub use lanes::Isa;
 pub use mesh::{MeshError, TriMesh};
@@ -37,4 +38,5 @@ pub use ray::{Ray, RayPacket};
 pub use scene::{AllHits, Scene};
 #[cfg(feature = "parallel")]
 pub use stream::HitLists;
+pub use triangle::{Intersection, intersect};
 pub use validate::{Statistics, Violation};

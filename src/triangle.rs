@@ -21,23 +21,33 @@
 use glam::{DVec3, Vec3};
 
 use crate::exact::{self, Expansion};
-use crate::lanes::{Lanes, WIDTH};
+use crate::lanes::{Isa, Lanes, WIDTH, dispatch};
 use crate::query::EdgeRule;
 use crate::ray::{Ray, RayPacket};
 
 /// Where a line meets a triangle: as in [`crate::Hit`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Intersection {
-    pub(crate) t: f32,
-    pub(crate) u: f32,
-    pub(crate) v: f32,
+pub struct Intersection {
+    /// Distance in units of the length of the ray's direction: the exact value, rounded.
+    pub t: f32,
+    /// Barycentric coordinate of the second corner, good to 2^-24.
+    pub u: f32,
+    /// Barycentric coordinate of the third corner, good to 2^-24.
+    pub v: f32,
 }
 
-/// Where the whole line of a valid ray meets a triangle, if it does and t is finite.
+/// Where the whole line of a valid ray, whatever its interval, meets a triangle; `None` also where t is
+/// beyond the largest f32.
 ///
-/// t is correctly rounded, u and v are good to 2^-24.
+/// ```
+/// use glam::Vec3;
+/// use octogrid::{EdgeRule, Ray, intersect};
+/// let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
+/// let through_a_corner = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -2.0]);
+/// assert_eq!(intersect(&through_a_corner, corners, EdgeRule::Closed).unwrap().t, 1.5);
+/// ```
 #[inline]
-pub(crate) fn intersect(ray: &Ray, corners: [Vec3; 3], rule: EdgeRule) -> Option<Intersection> {
+pub fn intersect(ray: &Ray, corners: [Vec3; 3], rule: EdgeRule) -> Option<Intersection> {
     match decide_rounded(ray, corners) {
         Decision::Hit(at) => Some(at),
         Decision::Miss => None,
@@ -165,7 +175,6 @@ impl<L: Lanes> RayLanes<L> {
 
 impl<L: Lanes> RayLanes<L> {
     /// A ray a lane.
-    #[cfg_attr(not(feature = "oracle"), allow(dead_code, reason = "single rays need no packets"))]
     #[inline(always)]
     pub(crate) fn gather(lanes: L, packet: &RayPacket) -> Self {
         let rays: [Ray; WIDTH] = std::array::from_fn(|lane| packet.get(lane));
@@ -177,6 +186,27 @@ impl<L: Lanes> RayLanes<L> {
             t_min: load(&|i| scales[i].time(rays[i].t_min)),
             t_max: load(&|i| scales[i].time(rays[i].t_max)),
         }
+    }
+}
+
+impl RayPacket {
+    /// The lanes whose valid ray may meet a triangle within its interval, as bits.
+    ///
+    /// Never misses one for which [`intersect`] finds a hit, and seldom names another. Lanes whose ray is
+    /// not valid are unspecified.
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use octogrid::{Isa, Ray, RayPacket};
+    /// let rays = [0.2, 5.0].map(|x| Ray::new([x, 0.2, 1.0], [0.0, 0.0, -1.0]));
+    /// let packet = RayPacket::new(&rays);
+    /// assert_eq!(packet.candidates(Isa::detect(), [Vec3::ZERO, Vec3::X, Vec3::Y]) & 0b11, 0b01);
+    /// ```
+    pub fn candidates(&self, isa: Isa, corners: [Vec3; 3]) -> u8 {
+        dispatch!(isa, lanes => {
+            let corners = corners.map(|corner| corner.to_array().map(|x| lanes.splat(x)));
+            candidates(lanes, &RayLanes::gather(lanes, self), corners) as u8
+        })
     }
 }
 
@@ -258,7 +288,7 @@ pub(crate) fn dot<L: Lanes>(a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> L::F32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::{Isa, Portable, dispatch};
+    use crate::lanes::Portable;
 
     fn corners(v: [[f32; 3]; 3]) -> [Vec3; 3] {
         v.map(Vec3::from_array)

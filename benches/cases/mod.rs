@@ -1,34 +1,35 @@
 //! The cases of all benches: scenes, structures and rays, with their answers checked.
 #![allow(dead_code, reason = "each bench uses its part")]
 
+use octogrid::descent::Walk;
 use octogrid::oracle::{Answer, brute};
 use octogrid::{BuildOptions, Hit, Model, Ray, Scene, Structure, builtin};
 
 /// The scenes: a room, a large interior, an object.
-pub const SCENES: [&str; 3] = ["room", "interior", "torus"];
+pub(crate) const SCENES: [&str; 3] = ["room", "interior", "torus"];
 
 /// What a query is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Query {
+pub(crate) enum Query {
     Closest,
     Any,
     All,
 }
 
 /// All queries with their names.
-pub const QUERIES: [(&str, Query); 3] =
+pub(crate) const QUERIES: [(&str, Query); 3] =
     [("closest", Query::Closest), ("any", Query::Any), ("all", Query::All)];
 
 /// A built-in scene with rays of its first camera and from what they hit.
-pub struct Case {
-    pub name: &'static str,
-    pub model: Model,
-    pub rays: Vec<Ray>,
+pub(crate) struct Case {
+    pub(crate) name: &'static str,
+    pub(crate) model: Model,
+    pub(crate) rays: Vec<Ray>,
 }
 
 impl Case {
     /// About `n` rays: half from the camera, half from where those hit into all directions.
-    pub fn new(name: &'static str, n: usize) -> Self {
+    pub(crate) fn new(name: &'static str, n: usize) -> Self {
         let builtin = builtin::by_name(name).expect("a built-in scene");
         let model = (builtin.model)();
         let scene =
@@ -49,9 +50,15 @@ impl Case {
     }
 
     /// The scene in one structure, after a check of its answers on some of the rays.
-    pub fn scene(&self, structure: Structure) -> Scene {
+    pub(crate) fn scene(&self, structure: Structure) -> Scene {
+        self.scene_with(structure, Walk::Special)
+    }
+
+    /// The same with a choice of the walk.
+    pub(crate) fn scene_with(&self, structure: Structure, walk: Walk) -> Scene {
         let mesh = self.model.mesh().expect("a sound mesh");
-        let scene = Scene::build(&mesh, &BuildOptions { structure, ..Default::default() }).expect("a scene");
+        let scene =
+            Scene::build(&mesh, &BuildOptions { structure, walk, ..Default::default() }).expect("a scene");
         let sample: Vec<Ray> =
             self.rays.iter().copied().step_by(self.rays.len().div_ceil(64).max(1)).collect();
         for (ray, answer) in sample.iter().zip(brute::answers(&mesh, &sample)) {
@@ -70,7 +77,7 @@ fn check(scene: &Scene, ray: &Ray, answer: &Answer) {
 }
 
 /// Runs a query for each ray; a number that depends on every answer.
-pub fn run(scene: &Scene, query: Query, rays: &[Ray]) -> u64 {
+pub(crate) fn run(scene: &Scene, query: Query, rays: &[Ray]) -> u64 {
     let mut buffer = [Hit::MISS; 256];
     let answer = |ray: &Ray| match query {
         Query::Closest => u64::from(scene.closest(ray).t.to_bits()),

@@ -144,7 +144,7 @@ fn library(b: &mut Builder, rng: &mut Rng) {
     for (i, z) in [6.5, 11.0, 16.0, 20.5].into_iter().enumerate() {
         lamps::panel(b, dvec3(32.5, 4.0, z));
         if i % 2 == 0 {
-            b.place(dvec3(32.0, 0.0, z + 1.0), 0.25, |b| desk(b));
+            b.place(dvec3(32.0, 0.0, z + 1.0), 0.25, desk);
         }
     }
 }

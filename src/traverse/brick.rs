@@ -100,7 +100,7 @@ pub(crate) fn mirror(mut mask: u64, octant: u32) -> u64 {
 /// What to XOR a mirrored index with.
 #[inline(always)]
 pub(crate) fn mirror_index(octant: u32) -> u32 {
-    (0..3).map(|axis| (octant >> axis & 1) * 3 << (2 * axis)).sum()
+    (0..3).map(|axis| ((octant >> axis & 1) * 3) << (2 * axis)).sum()
 }
 
 #[cfg(test)]

@@ -41,7 +41,7 @@ pub(crate) fn query<L: Lanes, Q: Query>(lanes: L, arena: &Arena, walk: Walk, ray
     if !ray.is_valid() {
         return;
     }
-    let clip = Path::new(ray, &arena.grid);
+    let clip = Path::clip(ray, &arena.grid);
     if let Clip::Miss = clip {
         return;
     }

@@ -1,0 +1,242 @@
+//! Instruction counts under valgrind: `cargo bench --bench instructions`.
+//!
+//! Needs valgrind and gungraun-runner; `cargo bench --bench gate` compares the counts with those that
+//! are committed. Every case checks its answers in its set-up, which is not counted.
+
+mod cases;
+
+use std::hint::black_box;
+
+use cases::{Case, Query, run};
+use glam::Vec3;
+use gungraun::{library_benchmark, library_benchmark_group, main};
+use octogrid::descent::{General, Halves, Walk, first_exit};
+use octogrid::{Cluster, EdgeRule, Isa, Ray, RayPacket, Scene, Structure, intersect};
+
+/// When a ray enters a divided voxel: exits, widths, time, rising axes.
+type Entry = ([f64; 3], [f64; 3], f64, u32);
+
+/// Entry points of all octants, a quarter of them of rays parallel to an axis, none on a middle plane.
+fn entries() -> Vec<Entry> {
+    let mut rng = octogrid::builtin::Rng::new(1);
+    (0..64)
+        .map(|i| {
+            let mut width = [0; 3].map(|_| rng.range(1.0, 4.0));
+            if i % 4 == 3 {
+                width[i / 4 % 3] = (1u64 << 60) as f64;
+            }
+            let exit = width.map(|w| 1.0 + w * rng.range(0.0, 1.0));
+            (exit, width, 1.0, i as u32 % 8)
+        })
+        .collect()
+}
+
+fn down_general<const N: u32>(entries: &[Entry], levels: u32) -> u32 {
+    let mut sum = 0;
+    for &(exit, width, time, rises) in entries {
+        let mut part = General::<N>::whole(exit, width);
+        for _ in 0..levels {
+            part = part.descend(time, rises);
+            sum += part.voxel;
+        }
+    }
+    sum
+}
+
+fn down_halves(entries: &[Entry], levels: u32) -> u32 {
+    let mut sum = 0;
+    for &(exit, width, time, rises) in entries {
+        let mut part = Halves::whole(exit, width);
+        for _ in 0..levels {
+            part = part.descend(time, rises);
+            sum += part.voxel;
+        }
+    }
+    sum
+}
+
+/// The entries, after a check that both codes for N = 2 agree on them.
+fn checked_entries(levels: u32) -> (Vec<Entry>, u32) {
+    let entries = entries();
+    assert_eq!(down_general::<2>(&entries, levels), down_halves(&entries, levels));
+    (entries, levels)
+}
+
+#[library_benchmark(setup = checked_entries)]
+#[bench::one_level(1)]
+#[bench::to_the_leaf(8)]
+fn descend_general_2((entries, levels): (Vec<Entry>, u32)) -> u32 {
+    black_box(down_general::<2>(black_box(&entries), black_box(levels)))
+}
+
+// Two levels of N = 2 at once.
+#[library_benchmark(setup = checked_entries)]
+#[bench::one_level(1)]
+#[bench::to_the_leaf(4)]
+fn descend_general_4((entries, levels): (Vec<Entry>, u32)) -> u32 {
+    black_box(down_general::<4>(black_box(&entries), black_box(levels)))
+}
+
+#[library_benchmark(setup = checked_entries)]
+#[bench::one_level(1)]
+#[bench::to_the_leaf(8)]
+fn descend_halves((entries, levels): (Vec<Entry>, u32)) -> u32 {
+    black_box(down_halves(black_box(&entries), black_box(levels)))
+}
+
+/// Where a step leads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Step {
+    Sibling,
+    /// Out of the divided voxel, into one that is not divided.
+    Out,
+    /// Out of the divided voxel, into one that is divided otherwise: coefficients anew.
+    OtherwiseDivided,
+}
+
+/// Parts from which the next step leads there, by both codes.
+fn parts(step: Step) -> (Vec<(General<2>, u32)>, Vec<(Halves, u32)>, Step) {
+    let mut all = (Vec::new(), Vec::new(), step);
+    for (exit, width, time, rises) in entries() {
+        let mut general = General::<2>::whole(exit, width).descend(time, rises);
+        let mut halves = Halves::whole(exit, width).descend(time, rises);
+        for _ in 0..6 {
+            let (before, axis) = ((general, halves), first_exit(&general.exit));
+            let inside = general.step(axis, rises);
+            assert_eq!(
+                (inside, general.voxel, general.exit),
+                (halves.step(axis, rises), halves.voxel, halves.exit)
+            );
+            if inside == (step == Step::Sibling) {
+                all.0.push((before.0, rises));
+                all.1.push((before.1, rises));
+                break;
+            }
+        }
+    }
+    all.0.truncate(32);
+    all.1.truncate(32);
+    assert_eq!(all.0.len(), 32);
+    all
+}
+
+#[library_benchmark(setup = parts)]
+#[bench::sibling(Step::Sibling)]
+#[bench::out(Step::Out)]
+#[bench::otherwise_divided(Step::OtherwiseDivided)]
+fn step_general_2((parts, _, step): (Vec<(General<2>, u32)>, Vec<(Halves, u32)>, Step)) -> u32 {
+    let mut sum = 0;
+    for (part, rises) in black_box(&parts) {
+        let mut part = *part;
+        let axis = first_exit(&part.exit);
+        let time = part.exit[axis];
+        part.step(axis, *rises);
+        let part = if step == Step::OtherwiseDivided { part.descend(time, *rises) } else { part };
+        sum += part.voxel;
+    }
+    black_box(sum)
+}
+
+#[library_benchmark(setup = parts)]
+#[bench::sibling(Step::Sibling)]
+#[bench::out(Step::Out)]
+#[bench::otherwise_divided(Step::OtherwiseDivided)]
+fn step_halves((_, parts, step): (Vec<(General<2>, u32)>, Vec<(Halves, u32)>, Step)) -> u32 {
+    let mut sum = 0;
+    for (part, rises) in black_box(&parts) {
+        let mut part = *part;
+        let axis = first_exit(&part.exit);
+        let time = part.exit[axis];
+        part.step(axis, *rises);
+        let part = if step == Step::OtherwiseDivided { part.descend(time, *rises) } else { part };
+        sum += part.voxel;
+    }
+    black_box(sum)
+}
+
+/// `room` with few rays: valgrind is slow.
+fn room(structure: Structure, walk: Walk, query: Query) -> (Scene, Vec<Ray>, Query) {
+    let case = Case::new("room", 256);
+    (case.scene_with(structure, walk), case.rays, query)
+}
+
+#[library_benchmark(setup = room)]
+#[bench::general(Structure::OCTREE, Walk::General, Query::Closest)]
+#[bench::special(Structure::OCTREE, Walk::Special, Query::Closest)]
+fn same_octree((scene, rays, query): (Scene, Vec<Ray>, Query)) -> u64 {
+    black_box(run(black_box(&scene), query, black_box(&rays)))
+}
+
+/// Rays that leave the tree before they meet a triangle: the walk alone.
+fn walk_alone(walk: Walk) -> (Scene, Vec<Ray>) {
+    let case = Case::new("room", 256);
+    let scene = case.scene_with(Structure::OCTREE, walk);
+    let rays = case.rays.iter().map(|r| r.with_interval(0.0, 0.9 * scene.closest(r).t)).collect();
+    (scene, rays)
+}
+
+#[library_benchmark(setup = walk_alone)]
+#[bench::general(Walk::General)]
+#[bench::special(Walk::Special)]
+fn same_octree_before_the_hit((scene, rays): (Scene, Vec<Ray>)) -> u64 {
+    black_box(run(black_box(&scene), Query::Any, black_box(&rays)))
+}
+
+#[library_benchmark(setup = room)]
+#[bench::uniform_closest(Structure::UNIFORM, Walk::Special, Query::Closest)]
+#[bench::uniform_any(Structure::UNIFORM, Walk::Special, Query::Any)]
+#[bench::uniform_all(Structure::UNIFORM, Walk::Special, Query::All)]
+#[bench::recursive_closest(Structure::RECURSIVE, Walk::Special, Query::Closest)]
+#[bench::recursive_any(Structure::RECURSIVE, Walk::Special, Query::Any)]
+#[bench::recursive_all(Structure::RECURSIVE, Walk::Special, Query::All)]
+#[bench::octree_closest(Structure::OCTREE, Walk::Special, Query::Closest)]
+#[bench::octree_any(Structure::OCTREE, Walk::Special, Query::Any)]
+#[bench::octree_all(Structure::OCTREE, Walk::Special, Query::All)]
+#[bench::hybrid_closest(Structure::HYBRID, Walk::Special, Query::Closest)]
+#[bench::hybrid_any(Structure::HYBRID, Walk::Special, Query::Any)]
+#[bench::hybrid_all(Structure::HYBRID, Walk::Special, Query::All)]
+fn structures((scene, rays, query): (Scene, Vec<Ray>, Query)) -> u64 {
+    black_box(run(black_box(&scene), query, black_box(&rays)))
+}
+
+/// A cluster of triangles in front of a ray, one of them in its way.
+fn kernel_case() -> (Isa, Cluster, RayPacket, Ray, [Vec3; 3]) {
+    let corners = |i: usize| {
+        let at = Vec3::new(2.0 * i as f32, 0.0, i as f32);
+        [at, at + Vec3::X, at + Vec3::Y]
+    };
+    let cluster = Cluster::new(&std::array::from_fn::<_, 8, _>(|i| (i as u32, corners(i))));
+    let rays: Vec<Ray> = (0..8).map(|i| Ray::new([6.2 + i as f32, 0.3, -5.0], [0.0, 0.1, 3.0])).collect();
+    let isa = Isa::detect();
+    assert_eq!(cluster.candidates(isa, &rays[0]), 1 << 3);
+    assert_eq!(RayPacket::new(&rays).candidates(isa, corners(3)), 1);
+    (isa, cluster, RayPacket::new(&rays), rays[0], corners(3))
+}
+
+#[library_benchmark(setup = kernel_case)]
+#[bench::one_ray_eight_triangles()]
+fn kernel_ray((isa, cluster, _, ray, _): (Isa, Cluster, RayPacket, Ray, [Vec3; 3])) -> u8 {
+    black_box(black_box(&cluster).candidates(isa, black_box(&ray)))
+}
+
+#[library_benchmark(setup = kernel_case)]
+#[bench::eight_rays_one_triangle()]
+fn kernel_packet((isa, _, packet, _, corners): (Isa, Cluster, RayPacket, Ray, [Vec3; 3])) -> u8 {
+    black_box(black_box(&packet).candidates(isa, black_box(corners)))
+}
+
+#[library_benchmark(setup = kernel_case)]
+#[bench::rounded()]
+fn kernel_decision((_, _, _, ray, corners): (Isa, Cluster, RayPacket, Ray, [Vec3; 3])) -> u32 {
+    black_box(intersect(black_box(&ray), black_box(corners), EdgeRule::Closed).map_or(0, |at| at.t.to_bits()))
+}
+
+library_benchmark_group!(
+    name = descents,
+    benchmarks = [descend_general_2, descend_general_4, descend_halves]
+);
+library_benchmark_group!(name = steps, benchmarks = [step_general_2, step_halves]);
+library_benchmark_group!(name = walks, benchmarks = [same_octree, same_octree_before_the_hit, structures]);
+library_benchmark_group!(name = kernels, benchmarks = [kernel_ray, kernel_packet, kernel_decision]);
+
+main!(library_benchmark_groups = [descents, steps, walks, kernels]);

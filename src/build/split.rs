@@ -50,6 +50,15 @@ impl VoxelView<'_> {
         })
     }
 
+    /// The longest side of each triangle's box.
+    fn extents(&self) -> impl Iterator<Item = f32> + '_ {
+        self.items.iter().flat_map(|item| {
+            let cluster = &self.clusters[item.cluster as usize];
+            let lanes = (0..WIDTH).filter(|lane| item.mask >> lane & 1 != 0);
+            lanes.map(|lane| Aabb::around(cluster.triangle(lane)).extent().max_element())
+        })
+    }
+
     /// The box of an item's triangles within the voxel.
     pub(crate) fn clipped(&self, item: &Item) -> Aabb {
         self.clusters[item.cluster as usize].bounds(item.mask).intersection(self.bounds)
@@ -150,7 +159,7 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
         let bounds = cube.enlarged(self.limits.margin);
         let view = VoxelView { items: &self.items[range.clone()], clusters: &self.arena.clusters, bounds };
         let leaf_cost = self.policy.leaf_cost(&view);
-        if self.may_divide(cube, depth) && self.policy.divides(&view) {
+        if self.may_divide(cube, depth) && self.policy.divides(&view) && self.separates(&view, cube.side) {
             let mark = self.mark();
             if let Some((word, cost)) = self.divide(range.clone(), cube, depth)?
                 && cost < leaf_cost
@@ -199,6 +208,13 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
         }
         self.items.truncate(floor);
         Ok(Some((node, self.policy.node_cost(sum, occupied.len() as u32))))
+    }
+
+    /// Whether a triangle is not much larger than the voxel; else smaller voxels would only chase the
+    /// vertex or the edge that all triangles share.
+    fn separates(&self, voxel: &VoxelView<'_>, side: f64) -> bool {
+        let most = 16.0 * side;
+        self.arena.form == Form::Bricks || voxel.extents().any(|extent| f64::from(extent) < most)
     }
 
     /// Whether division spares a ray through the voxel some triangle tests, given that it meets a part

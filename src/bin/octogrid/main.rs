@@ -1,2 +1,52 @@
-//! The command `octogrid`.
-fn main() {}
+//! The command `octogrid`: pictures, hits and numbers of triangle scenes.
+//!
+//! Exit codes: 0 success; 1 expected failure, told in one line on standard error; 2 wrong usage.
+
+mod args;
+mod failure;
+mod load;
+mod npy;
+mod output;
+mod params;
+mod pool;
+mod table;
+mod trace;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser, Subcommand};
+
+use failure::Failure;
+
+/// Ray queries against triangle scenes with voxel structures.
+#[derive(Parser)]
+#[command(name = "octogrid", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Trace(trace::Args),
+}
+
+fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Trace(args) => trace::run(&args),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Usage(what)) => {
+            let _ = Cli::command().error(ErrorKind::ValueValidation, what).print();
+            ExitCode::from(2)
+        }
+        Err(Failure::Expected(what)) => {
+            let line = what.split_whitespace().collect::<Vec<_>>().join(" ");
+            let _ = writeln!(std::io::stderr(), "octogrid: {line}");
+            ExitCode::from(1)
+        }
+    }
+}

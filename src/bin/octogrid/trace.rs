@@ -1,0 +1,196 @@
+//! `octogrid trace`: rays of a file against a scene, hits to a file.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::ValueEnum;
+use octogrid::{Hit, HitLists, Ray, Scene};
+use serde::Serialize;
+
+use crate::args::{BuildArgs, Choice};
+use crate::failure::Failure;
+use crate::load::{self, Loaded};
+use crate::npy::{self, AllRow, HitRow};
+use crate::output::{Output, say};
+use crate::pool::ThreadArgs;
+use crate::table;
+
+/// Trace the rays of a NumPy file and write their hits
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// An OBJ file or the name of a built-in scene
+    scene: String,
+    /// The rays: float32, shape (n, 8): ox oy oz t_min dx dy dz t_max
+    #[arg(long, value_name = "FILE.npy")]
+    rays: PathBuf,
+    /// What to ask
+    #[arg(long, value_enum)]
+    query: Question,
+    /// Where the hits go
+    #[arg(long, value_name = "FILE.npy")]
+    hits: PathBuf,
+    /// The voxel structure
+    #[arg(long, value_enum, default_value = "auto")]
+    structure: Choice,
+    #[command(flatten)]
+    build: BuildArgs,
+    #[command(flatten)]
+    threads: ThreadArgs,
+    /// Ask this many times, and report the best and the median time
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    repeat: u32,
+    /// Print one JSON object instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+/// The values of `--query`.
+#[derive(Clone, Copy, Debug, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+enum Question {
+    /// The first hit of each ray
+    Closest,
+    /// Whether a ray hits anything
+    Any,
+    /// Every hit of each ray, along the ray
+    All,
+}
+
+/// What a run reports; times hold the queries alone.
+#[derive(Serialize)]
+struct Report {
+    scene: String,
+    triangles: usize,
+    structure: &'static str,
+    build_ms: f64,
+    bytes_per_triangle: f64,
+    query: Question,
+    rays: usize,
+    hits: usize,
+    threads: usize,
+    best_s: f64,
+    median_s: f64,
+    mrays_per_s: f64,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// On wrong parameters, on files that can't be read or written, and where the build fails.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let options = args.build.options(args.structure)?;
+    let output = Output::at(&args.hits)?;
+    let loaded = load::load(&args.scene)?;
+    let rays = npy::read_rays(&args.rays)?;
+    let (report, answer) = args.threads.run(|| {
+        let (scene, build_ms) = load::build(&loaded.model, &options)?;
+        let (answer, seconds) = ask(&scene, &rays, args.query, args.repeat);
+        Ok((report(&loaded, &scene, build_ms, args.query, rays.len(), &answer, &seconds), answer))
+    })?;
+    output.write(|file| answer.write(file))?;
+    if args.json {
+        let json = serde_json::to_string(&report);
+        return say(json.map_err(|e| Failure::Expected(e.to_string()))?);
+    }
+    say(summary(&report))
+}
+
+/// The answers to all rays.
+enum Answer {
+    Closest(Vec<Hit>),
+    Any(Vec<bool>),
+    All(HitLists),
+}
+
+impl Answer {
+    fn hits(&self) -> usize {
+        match self {
+            Self::Closest(hits) => hits.iter().filter(|h| h.is_hit()).count(),
+            Self::Any(hits) => hits.iter().filter(|&&h| h).count(),
+            Self::All(lists) => lists.hits.len(),
+        }
+    }
+
+    fn write(&self, file: &mut impl Write) -> io::Result<()> {
+        match self {
+            Self::Closest(hits) => {
+                let rows = hits.iter().map(|&Hit { t, u, v, prim }| HitRow { t, u, v, prim });
+                npy::write_rows(file, hits.len(), rows)
+            }
+            Self::Any(hits) => npy::write_rows(file, hits.len(), hits.iter().copied()),
+            Self::All(lists) => {
+                let of_ray = |(ray, ends): (usize, &[usize])| (ray as u32, ends[0]..ends[1]);
+                let rows = lists.offsets.windows(2).enumerate().map(of_ray).flat_map(|(ray, range)| {
+                    let row = move |&Hit { t, u, v, prim }: &Hit| AllRow { ray, t, u, v, prim };
+                    lists.hits[range].iter().map(row)
+                });
+                npy::write_rows(file, lists.hits.len(), rows)
+            }
+        }
+    }
+}
+
+/// The answer, and the sorted seconds of each repetition.
+fn ask(scene: &Scene, rays: &[Ray], question: Question, repeat: u32) -> (Answer, Vec<f64>) {
+    let mut answer = match question {
+        Question::Closest => Answer::Closest(vec![Hit::MISS; rays.len()]),
+        Question::Any => Answer::Any(vec![false; rays.len()]),
+        Question::All => Answer::All(HitLists::default()),
+    };
+    let mut seconds = Vec::new();
+    for _ in 0..repeat {
+        let start = Instant::now();
+        match &mut answer {
+            Answer::Closest(hits) => scene.closest_batch(rays, hits),
+            Answer::Any(hits) => scene.occluded_batch(rays, hits),
+            Answer::All(lists) => *lists = scene.all_batch(rays),
+        }
+        seconds.push(start.elapsed().as_secs_f64());
+    }
+    seconds.sort_by(f64::total_cmp);
+    (answer, seconds)
+}
+
+fn report(
+    loaded: &Loaded,
+    scene: &Scene,
+    build_ms: f64,
+    query: Question,
+    rays: usize,
+    answer: &Answer,
+    seconds: &[f64],
+) -> Report {
+    let median_s = (seconds[(seconds.len() - 1) / 2] + seconds[seconds.len() / 2]) / 2.0;
+    Report {
+        scene: loaded.name.clone(),
+        triangles: scene.triangles(),
+        structure: scene.structure().name(),
+        build_ms,
+        bytes_per_triangle: load::bytes_per_triangle(scene),
+        query,
+        rays,
+        hits: answer.hits(),
+        threads: rayon::current_num_threads(),
+        best_s: seconds[0],
+        median_s,
+        mrays_per_s: if median_s > 0.0 { rays as f64 / median_s / 1e6 } else { 0.0 },
+    }
+}
+
+fn summary(report: &Report) -> impl std::fmt::Display + use<> {
+    table::pairs([
+        ("scene", report.scene.clone()),
+        ("triangles", report.triangles.to_string()),
+        ("structure", report.structure.to_owned()),
+        ("build, ms", format!("{:.2}", report.build_ms)),
+        ("bytes a triangle", format!("{:.1}", report.bytes_per_triangle)),
+        ("query", format!("{:?}", report.query).to_lowercase()),
+        ("rays", report.rays.to_string()),
+        ("hits", report.hits.to_string()),
+        ("threads", report.threads.to_string()),
+        ("best, s", format!("{:.6}", report.best_s)),
+        ("median, s", format!("{:.6}", report.median_s)),
+        ("Mray/s", format!("{:.3}", report.mrays_per_s)),
+    ])
+}

@@ -9,6 +9,7 @@ mod npy;
 mod output;
 mod params;
 mod pool;
+mod scene;
 mod table;
 mod trace;
 
@@ -31,11 +32,13 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Trace(trace::Args),
+    Scene(scene::Args),
 }
 
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Trace(args) => trace::run(&args),
+        Command::Scene(args) => scene::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 success; 1 expected failure, told in one line on standard error; 2 wrong usage.
 
+mod analyze;
 mod args;
 mod failure;
 mod load;
@@ -10,6 +11,7 @@ mod output;
 mod params;
 mod pool;
 mod scene;
+mod survey;
 mod table;
 mod trace;
 
@@ -32,12 +34,14 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Trace(trace::Args),
+    Analyze(analyze::Args),
     Scene(scene::Args),
 }
 
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Trace(args) => trace::run(&args),
+        Command::Analyze(args) => analyze::run(&args),
         Command::Scene(args) => scene::run(&args),
     };
     match done {

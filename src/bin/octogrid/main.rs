@@ -4,16 +4,26 @@
 
 mod analyze;
 mod args;
+mod camera;
 mod failure;
+mod frame;
+mod heat;
+mod layers;
+mod legend;
+mod lights;
 mod load;
 mod npy;
 mod output;
 mod params;
 mod pool;
+mod render;
 mod scene;
+mod shade;
 mod survey;
 mod table;
+mod tone;
 mod trace;
+mod viewpoint;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -33,6 +43,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Render(render::Args),
     Trace(trace::Args),
     Analyze(analyze::Args),
     Scene(scene::Args),
@@ -40,6 +51,7 @@ enum Command {
 
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
+        Command::Render(args) => render::run(&args),
         Command::Trace(args) => trace::run(&args),
         Command::Analyze(args) => analyze::run(&args),
         Command::Scene(args) => scene::run(&args),

@@ -13,6 +13,8 @@ mod hit;
 mod lanes;
 mod mesh;
 mod model;
+#[cfg(feature = "obj")]
+pub mod obj;
 #[cfg(feature = "oracle")]
 pub mod oracle;
 mod overlap;

@@ -43,7 +43,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 /// Milliseconds, bytes a triangle, and the parts of a structure that holds all its invariants.
 fn measure(model: &Model, options: &BuildOptions) -> Result<(f64, f64, Statistics), Failure> {
     let (scene, build_ms) = load::build(model, options)?;
-    let statistics = scene.validate().map_err(|violation| Failure::Expected(violation.0))?;
+    let statistics = scene.validate().map_err(|violation| Failure::Expected(violation.to_string()))?;
     Ok((build_ms, load::bytes_per_triangle(&scene), statistics))
 }
 

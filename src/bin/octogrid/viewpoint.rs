@@ -31,15 +31,20 @@ fn inside(model: &Model, scene: &Scene, at: impl Fn(DVec3) -> DVec3, up: usize) 
         fractions[up] = height;
         at(fractions)
     };
-    let corners = [(0.15, 0.15), (0.85, 0.15), (0.15, 0.85), (0.85, 0.85)];
-    let eyes = corners.iter().flat_map(|&(x, y)| [0.35, 0.6].map(|height| place(x, y, height)));
-    let sight = |eye: DVec3| {
-        let probe = Probe::at(model, scene, eye);
-        if probe.is_inside() { probe.median } else { 0.0 }
-    };
-    let best = eyes.map(|eye| (sight(eye), eye)).max_by(|a, b| a.0.total_cmp(&b.0));
-    let eye = best.map_or(place(0.15, 0.15, 0.5), |(_, eye)| eye);
-    Viewpoint { eye, target: place(0.5, 0.5, 0.4), fov_degrees: 65.0 }
+    let corner =
+        |inset: f64| [(inset, inset), (1.0 - inset, inset), (inset, 1.0 - inset), (1.0 - inset, 1.0 - inset)];
+    let corners = [0.15, 0.25].into_iter().flat_map(corner);
+    let eyes = corners.flat_map(|(x, y)| [0.35, 0.6].map(|height| place(x, y, height)));
+    let probes = eyes.map(|eye| (Probe::at(model, scene, eye), eye)).filter(|(p, _)| p.is_inside());
+    let best = probes.max_by(|a, b| a.0.median.total_cmp(&b.0.median));
+    // In a building of several rooms the centre of all is behind a wall, that of what is seen is not.
+    let middle = place(0.5, 0.5, 0.45);
+    let (centre, eye) = best.map_or((middle, place(0.15, 0.15, 0.5)), |(probe, eye)| (probe.centre, eye));
+    let mut towards = centre - eye;
+    towards[up] = 0.0;
+    // A little downwards: floors carry more than ceilings.
+    towards[up] = -0.2 * towards.length();
+    Viewpoint { eye, target: eye + towards, fov_degrees: 65.0 }
 }
 
 /// A three-quarter view that holds the bounding sphere.
@@ -63,6 +68,8 @@ struct Probe {
     walls: f64,
     /// Median distance of a hit.
     median: f64,
+    /// The mean of the hits.
+    centre: DVec3,
 }
 
 impl Probe {
@@ -71,12 +78,15 @@ impl Probe {
         let seen: Vec<(Ray, Hit)> =
             rays.map(|ray| (ray, scene.closest(&ray))).filter(|(_, hit)| hit.is_hit()).collect();
         let walls = seen.iter().filter(|(ray, hit)| meets_wall(model, ray, hit)).count();
+        let reached = seen.iter().map(|(ray, hit)| ray.at(hit.t).as_dvec3());
+        let centre = reached.sum::<DVec3>() / seen.len().max(1) as f64;
         let mut distances: Vec<f32> = seen.iter().map(|(_, hit)| hit.t).collect();
         distances.sort_by(f32::total_cmp);
         Self {
             closed: seen.len() as f64 / PROBES as f64,
             walls: walls as f64 / seen.len().max(1) as f64,
             median: distances.get(distances.len() / 2).copied().map_or(0.0, f64::from),
+            centre,
         }
     }
 

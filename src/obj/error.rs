@@ -97,7 +97,10 @@ impl fmt::Display for ObjError {
                 f.write_str("the model can't be written: give each triangle a valid material, or none to all")
             }
             Self::MaterialName(name) => {
-                write!(f, "the material name {name:?} can't be written: give each material its own plain name")
+                write!(
+                    f,
+                    "the material name {name:?} can't be written: give each material its own plain name"
+                )
             }
         }
     }
@@ -108,13 +111,20 @@ impl fmt::Display for Problem {
         match self {
             Self::NotText => f.write_str("this is not text; give an OBJ file"),
             Self::NotANumber(token) => write!(f, "{token:?} is not a number"),
-            Self::NotFinite(token) => write!(f, "{token:?} is not a finite 32-bit number; correct or scale it"),
+            Self::NotFinite(token) => {
+                write!(f, "{token:?} is not a finite 32-bit number; correct or scale it")
+            }
             Self::NumberCount { expected, found } => write!(f, "expected {expected} numbers, found {found}"),
             Self::ZeroWeight => f.write_str("the weight of a vertex must not be zero"),
             Self::TooFewCorners(n) => write!(f, "a face needs at least 3 corners, found {n}; remove it"),
-            Self::BadCorner(token) => write!(f, "{token:?} is not a corner of a face: v, v/vt, v//vn or v/vt/vn"),
+            Self::BadCorner(token) => {
+                write!(f, "{token:?} is not a corner of a face: v, v/vt, v//vn or v/vt/vn")
+            }
             Self::IndexOutOfRange { what, index, count } => {
-                write!(f, "{what} {index} does not exist: the file has {count} of these here; correct the index")
+                write!(
+                    f,
+                    "{what} {index} does not exist: the file has {count} of these here; correct the index"
+                )
             }
             Self::NoName => f.write_str("a material needs a name"),
         }

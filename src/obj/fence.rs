@@ -63,7 +63,8 @@ impl Indices {
     }
 
     fn check(&self) -> Result<(), Fault> {
-        for (what, (count, (index, line))) in KINDS.into_iter().zip(self.counts.into_iter().zip(self.largest)) {
+        for (what, (count, (index, line))) in KINDS.into_iter().zip(self.counts.into_iter().zip(self.largest))
+        {
             if index > count {
                 return Err((line, Problem::IndexOutOfRange { what, index: index as i64, count }));
             }

@@ -18,7 +18,7 @@ type Entry = ([f64; 3], [f64; 3], f64, u32);
 
 /// Entry points of all octants, a quarter of them of rays parallel to an axis, none on a middle plane.
 fn entries() -> Vec<Entry> {
-    let mut rng = octogrid::builtin::Rng::new(1);
+    let mut rng = octogrid::Rng::new(1);
     (0..64)
         .map(|i| {
             let mut width = [0; 3].map(|_| rng.range(1.0, 4.0));

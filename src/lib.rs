@@ -20,6 +20,7 @@ pub mod oracle;
 mod overlap;
 mod query;
 mod ray;
+mod rng;
 mod scene;
 #[cfg(feature = "parallel")]
 mod stream;
@@ -37,6 +38,7 @@ pub use mesh::{MeshError, TriMesh};
 pub use model::{Material, Model};
 pub use query::{All, Any, Closest, Counting, Counts, EdgeRule, Query};
 pub use ray::{Ray, RayPacket};
+pub use rng::Rng;
 pub use scene::{AllHits, Scene};
 #[cfg(feature = "parallel")]
 pub use stream::HitLists;

@@ -24,10 +24,32 @@ fn random_meshes() {
 }
 
 #[test]
-fn generated_scenes() {
-    for (name, mesh) in common::generated_scenes() {
+fn small_scenes() {
+    for (name, mesh) in common::small_scenes() {
         println!("{name}");
         assert_on_hazards(&mesh, 1, 200);
+    }
+}
+
+#[test]
+fn builtin_scenes() {
+    for (name, (vertices, triangles)) in common::builtin_scenes() {
+        println!("{name}");
+        let mesh = TriMesh::new(&vertices, &triangles).unwrap();
+        assert_on_rays_of_all_kinds(name, &mesh, [1000, 1000, 500]);
+    }
+}
+
+/// The four structures against brute force on random, camera and aimed rays, of which some also against
+/// exact arithmetic.
+fn assert_on_rays_of_all_kinds(name: &str, mesh: &TriMesh<'_>, rays: [usize; 3]) {
+    let sets = [RaySet::Random, RaySet::Camera, RaySet::Aimed];
+    for ((set, n), exact) in sets.into_iter().zip(rays).zip([20, 0, 40]) {
+        let rays: Vec<Ray> = set.rays(mesh, 1, n);
+        let agreement = Agreement { exact, decorated: 500, ..Agreement::quick() };
+        if let Err(disagreement) = agreement.check(mesh, &rays) {
+            panic!("{name}, {set:?} rays: {disagreement}");
+        }
     }
 }
 
@@ -64,6 +86,7 @@ fn extreme_scales() {
 }
 
 /// Every OBJ file in the folder OCTOGRID_SCENES; run it in release mode.
+#[cfg(feature = "obj")]
 #[test]
 fn scene_files() {
     let files = common::scene_files();
@@ -71,18 +94,11 @@ fn scene_files() {
         println!("OCTOGRID_SCENES is not set or holds no OBJ file: the sweep was skipped");
     }
     for path in files {
-        let model = common::read_obj(&path);
-        let mesh = model.mesh().unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let name = path.display().to_string();
+        let model = octogrid::obj::read_obj(&path).unwrap_or_else(|error| panic!("{error}"));
+        let mesh = model.mesh().unwrap_or_else(|error| panic!("{name}: {error}"));
         let start = std::time::Instant::now();
-        for (set, rays, exact) in
-            [(RaySet::Random, 10_000, 20), (RaySet::Camera, 10_000, 0), (RaySet::Aimed, 2_000, 40)]
-        {
-            let rays: Vec<Ray> = set.rays(&mesh, 1, rays);
-            let agreement = Agreement { exact, decorated: 500, ..Agreement::quick() };
-            if let Err(disagreement) = agreement.check(&mesh, &rays) {
-                panic!("{}, {set:?} rays: {disagreement}", path.display());
-            }
-        }
-        println!("{}: {} triangles, {:.1?}", path.display(), mesh.len(), start.elapsed());
+        assert_on_rays_of_all_kinds(&name, &mesh, [10_000, 10_000, 2_000]);
+        println!("{name}: {} triangles, {:.1?}", mesh.len(), start.elapsed());
     }
 }

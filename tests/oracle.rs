@@ -2,9 +2,10 @@
 #![cfg(feature = "oracle")]
 
 use glam::{DVec3, Vec3};
+use octogrid::Rng;
 use octogrid::oracle::meshes::{MeshKind, closed_mesh, cuboid, random_mesh};
 use octogrid::oracle::rays::{RaySet, hazards};
-use octogrid::oracle::{SplitMix64, brute, exact};
+use octogrid::oracle::{brute, exact};
 use octogrid::{EdgeRule, Ray, TriMesh};
 use robust::{Coord3D, orient3d};
 
@@ -22,14 +23,14 @@ fn meets(o: DVec3, d: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
     det != 0.0 && signs.iter().all(|sign| sign * det >= 0.0)
 }
 
-fn integer_case(rng: &mut SplitMix64, n: usize) -> (Ray, [Vec3; 3]) {
+fn integer_case(rng: &mut Rng, n: usize) -> (Ray, [Vec3; 3]) {
     let [o, d, a, b, c] = [(); 5].map(|()| Vec3::from_array([(); 3].map(|()| rng.integer(n))));
     (Ray::new(o, d), [a, b, c])
 }
 
 #[test]
 fn closed_triangles_agree_with_orientations() {
-    let rng = &mut SplitMix64::new(1);
+    let rng = &mut Rng::new(1);
     let mut met = 0;
     for n in [1, 2, 4, 100] {
         for _ in 0..5_000 {
@@ -48,7 +49,7 @@ fn closed_triangles_agree_with_orientations() {
 /// infinitesimal: sides are integers, and a gradient's components are at most 64.
 #[test]
 fn crossings_agree_with_orientations_from_a_moved_origin() {
-    let rng = &mut SplitMix64::new(2);
+    let rng = &mut Rng::new(2);
     let step = DVec3::new(-10.0, -20.0, -30.0).exp2();
     let mut decided = 0;
     for _ in 0..40_000 {
@@ -66,7 +67,7 @@ fn crossings_agree_with_orientations_from_a_moved_origin() {
 
 #[test]
 fn scaling_by_powers_of_two_changes_t_alone() {
-    let rng = &mut SplitMix64::new(3);
+    let rng = &mut Rng::new(3);
     for _ in 0..2_000 {
         let (ray, corners) = integer_case(rng, 9);
         for rule in [EdgeRule::Closed, EdgeRule::Crossing] {
@@ -85,7 +86,7 @@ fn scaling_by_powers_of_two_changes_t_alone() {
 
 #[test]
 fn t_rounds_the_quotient_that_f64_can_hold() {
-    let rng = &mut SplitMix64::new(4);
+    let rng = &mut Rng::new(4);
     for _ in 0..5_000 {
         let (ray, corners) = integer_case(rng, 50);
         let Some(hit) = exact::intersect(&ray, corners, EdgeRule::Closed) else { continue };

@@ -35,7 +35,7 @@ impl Case {
         let scene =
             Scene::build(&model.mesh().expect("a sound mesh"), &BuildOptions::default()).expect("a scene");
         let mut rays = camera_rays(&builtin.cameras[0], n / 2);
-        let mut rng = builtin::Rng::new(1);
+        let mut rng = octogrid::Rng::new(1);
         let bounces: Vec<Ray> = rays
             .iter()
             .map(|ray| (ray, scene.closest(ray)))

@@ -3,8 +3,8 @@
 use glam::{DVec3, dvec3};
 
 use super::builder::Builder;
-use super::rng::Rng;
 use super::shapes::smooth;
+use crate::rng::Rng;
 
 /// The profile of a turned table leg of height 1 and unit width, to be scaled.
 const LEG: [[f64; 2]; 9] = [

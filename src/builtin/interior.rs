@@ -8,14 +8,14 @@ use super::Camera;
 use super::builder::Builder;
 use super::furniture::{baluster, chair, column, legs, picture, plant, shelves, sofa, table, vase};
 use super::lamps;
-use super::rng::Rng;
 use super::trig::sin_cos;
 use crate::model::Model;
+use crate::rng::Rng;
 
 pub(super) const CAMERAS: [Camera; 3] = [
     Camera::new([1.2, 2.4, 16.2], [17.0, 2.2, 9.0], 60.0),
     Camera::new([14.5, 1.7, 15.6], [28.0, 2.6, 9.0], 60.0),
-    Camera::new([30.2, 6.0, 18.5], [12.0, 1.6, 9.0], 65.0),
+    Camera::new([28.9, 6.8, 15.0], [9.0, 0.6, 10.0], 65.0),
 ];
 
 const SIZE: DVec3 = dvec3(36.0, 9.0, 24.0);
@@ -66,7 +66,7 @@ fn windows(b: &mut Builder) {
 
 /// A window in z = 0 that looks along +z.
 fn window(b: &mut Builder) {
-    b.light("daylight", [7.0, 8.0, 9.5]);
+    b.light("daylight", [10.0, 11.5, 13.5]);
     b.cuboid(dvec3(-1.1, 0.1, 0.01), dvec3(1.1, 3.9, 0.03));
     b.paint("window frame", [0.8, 0.79, 0.75]);
     for i in 0..4 {

@@ -5,7 +5,7 @@ use glam::{DVec3, dvec3};
 use super::builder::Builder;
 use super::trig::sin_cos;
 
-const WARM: [f32; 3] = [30.0, 22.0, 13.0];
+const WARM: [f32; 3] = [120.0, 92.0, 58.0];
 
 fn brass(b: &mut Builder) {
     b.paint("brass", [0.62, 0.46, 0.2]);
@@ -32,7 +32,7 @@ pub(crate) fn chandelier(b: &mut Builder, at: DVec3, drop: f64) {
 pub(crate) fn pendant(b: &mut Builder, at: DVec3, drop: f64) {
     brass(b);
     b.lathe(at - DVec3::Y * drop, &[[0.0, 0.21], [0.06, 0.21], [0.015, 0.3], [0.015, drop], [0.0, drop]], 10);
-    b.light("globe", [14.0, 12.0, 9.0]);
+    b.light("globe", [40.0, 34.0, 26.0]);
     b.sphere(at - DVec3::Y * drop, 0.2, 20, 12);
 }
 
@@ -40,7 +40,7 @@ pub(crate) fn pendant(b: &mut Builder, at: DVec3, drop: f64) {
 pub(crate) fn panel(b: &mut Builder, at: DVec3) {
     b.paint("mullion", [0.15, 0.15, 0.16]);
     b.cuboid(at - dvec3(0.65, 0.03, 0.35), at + dvec3(0.65, 0.0, 0.35));
-    b.light("panel", [9.0, 8.5, 7.5]);
+    b.light("panel", [20.0, 19.0, 17.0]);
     b.cuboid(at - dvec3(0.6, 0.05, 0.3), at + dvec3(0.6, -0.035, 0.3));
 }
 

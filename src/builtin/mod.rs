@@ -8,7 +8,6 @@ mod builder;
 mod furniture;
 mod interior;
 mod lamps;
-mod rng;
 mod room;
 mod shapes;
 mod small;
@@ -17,7 +16,6 @@ mod tests;
 mod trig;
 
 pub use interior::interior;
-pub use rng::Rng;
 pub use room::room;
 pub use small::{cube, empty, icosphere, plane, slivers, soup, sphere, stadium, torus, triangle};
 

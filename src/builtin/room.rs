@@ -68,7 +68,7 @@ fn lamps(b: &mut Builder) {
         b.place(dvec3(x, 2.0, z), turns, |b| {
             b.paint("brass", [0.6, 0.45, 0.2]);
             b.cuboid(dvec3(-0.06, -0.12, 0.0), dvec3(0.06, 0.12, 0.05));
-            b.light(&format!("lamp {}", i + 1), [11.0, 9.0, 6.5]);
+            b.light(&format!("lamp {}", i + 1), [55.0, 45.0, 32.0]);
             b.cuboid(dvec3(-0.16, -0.1, 0.07), dvec3(0.16, 0.1, 0.1));
         });
     }

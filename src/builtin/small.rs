@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use glam::{DVec3, dvec3};
 
 use super::builder::Builder;
-use super::rng::Rng;
 use super::trig::sin_cos;
 use crate::model::Model;
+use crate::rng::Rng;
 
 fn build(part: impl FnOnce(&mut Builder)) -> Model {
     let mut b = Builder::default();

@@ -114,7 +114,7 @@ impl fmt::Display for Problem {
             Self::NotFinite(token) => {
                 write!(f, "{token:?} is not a finite 32-bit number; correct or scale it")
             }
-            Self::NumberCount { expected, found } => write!(f, "expected {expected} numbers, found {found}"),
+            Self::NumberCount { expected, found } => write!(f, "expected {expected}, found {found}"),
             Self::ZeroWeight => f.write_str("the weight of a vertex must not be zero"),
             Self::TooFewCorners(n) => write!(f, "a face needs at least 3 corners, found {n}; remove it"),
             Self::BadCorner(token) => {

@@ -77,7 +77,7 @@ impl Indices {
 fn vertex(rest: &str, out: &mut String) -> Result<(), Problem> {
     let tokens: Vec<&str> = without_comment(rest).split_whitespace().collect();
     if ![3, 4, 6].contains(&tokens.len()) {
-        return Err(Problem::NumberCount { expected: "3, 4 or 6", found: tokens.len() });
+        return Err(Problem::NumberCount { expected: "3, 4 or 6 numbers", found: tokens.len() });
     }
     let weighted = &tokens[..tokens.len().min(4 - usize::from(tokens.len() == 6))];
     let numbers = weighted.iter().map(|token| finite(token)).collect::<Result<Vec<f32>, _>>()?;
@@ -144,7 +144,7 @@ fn numbers(keyword: &str, rest: &str, count: usize, out: &mut String) -> Result<
         n if n == count => push_line(out, keyword, &tokens),
         1 => push_line(out, keyword, &vec![tokens[0]; count]),
         found => {
-            let expected = if count == 1 { "1" } else { "1 or 3" };
+            let expected = if count == 1 { "1 number" } else { "1 or 3 numbers" };
             return Err(Problem::NumberCount { expected, found });
         }
     }

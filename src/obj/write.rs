@@ -18,6 +18,9 @@ use crate::model::Model;
 pub fn save_obj(model: &Model, path: &Path) -> Result<(), ObjError> {
     check(model)?;
     let mtl = path.with_extension("mtl");
+    if mtl == path || file_name(&mtl).contains(char::is_control) {
+        return Err(ObjError::io("write", path, io::Error::from(io::ErrorKind::InvalidFilename)));
+    }
     let library = if model.materials.is_empty() { None } else { Some(file_name(&mtl)) };
     let obj = Draft::write(path, |out| write_obj(model, library.as_deref(), out))?;
     if library.is_some() {

@@ -50,10 +50,10 @@ impl Agreement {
     }
 
     /// Every structure with default and with extreme parameters, every instruction set, one and two
-    /// threads, all rays against exact arithmetic.
+    /// threads, all rays against exact arithmetic, some of them decorated.
     pub fn thorough() -> Self {
         let structures = Structure::ALL.into_iter().chain(variants()).collect();
-        Self { structures, threads: vec![1, 2], isas: Isa::available(), ..Self::quick() }
+        Self { structures, threads: vec![1, 2], isas: Isa::available(), decorated: 50, ..Self::quick() }
     }
 
     /// Compares, and panics at the first disagreement with all that is needed to replay it.

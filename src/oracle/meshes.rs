@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::rng::SplitMix64;
+use crate::rng::Rng;
 
 /// Vertices, and three indices into them for each triangle.
 pub type Mesh = (Vec<[f32; 3]>, Vec<[u32; 3]>);
@@ -32,7 +32,7 @@ impl MeshKind {
 
 /// A mesh of 1 to 60 triangles, the same for the same seed and kind.
 pub fn random_mesh(seed: u64, kind: MeshKind) -> Mesh {
-    let rng = &mut SplitMix64::new(seed);
+    let rng = &mut Rng::new(seed);
     let n = 1 + rng.below(60);
     match kind {
         MeshKind::Integer => indexed(rng, n, |rng| [(); 3].map(|()| rng.integer(4))),
@@ -68,7 +68,7 @@ pub fn cuboid(min: Vec3, max: Vec3) -> Mesh {
 /// triangles are divided into four `levels` times, each new vertex moved by a random step that all
 /// triangles around it share. It may intersect itself.
 pub fn closed_mesh(seed: u64, levels: u32) -> Mesh {
-    let rng = &mut SplitMix64::new(seed);
+    let rng = &mut Rng::new(seed);
     let size = 8 << levels;
     let mut vertices: Vec<[f32; 3]> =
         (0..4).map(|_| [(); 3].map(|()| rng.integer(4) * size as f32)).collect();
@@ -104,7 +104,7 @@ fn subdivide(
 }
 
 /// `n` triangles between about as many vertices as a closed mesh would have.
-fn indexed(rng: &mut SplitMix64, n: usize, mut vertex: impl FnMut(&mut SplitMix64) -> [f32; 3]) -> Mesh {
+fn indexed(rng: &mut Rng, n: usize, mut vertex: impl FnMut(&mut Rng) -> [f32; 3]) -> Mesh {
     let vertices: Vec<_> = (0..n / 2 + 3).map(|_| vertex(rng)).collect();
     let triangles = (0..n).map(|_| [(); 3].map(|()| rng.below(vertices.len()) as u32)).collect();
     (vertices, triangles)
@@ -115,7 +115,7 @@ fn soup(triangles: Vec<[Vec3; 3]>) -> Mesh {
     (triangles.iter().flatten().map(|v| v.to_array()).collect(), indices)
 }
 
-fn clustered(rng: &mut SplitMix64, n: usize) -> Mesh {
+fn clustered(rng: &mut Rng, n: usize) -> Mesh {
     let centers = [(); 3].map(|()| 1000.0 * rng.in_cube().as_vec3());
     let triangle = |_| {
         let (center, size) = (rng.pick(&centers), rng.pick(&[1.0, 0.01, 100.0]));
@@ -124,14 +124,14 @@ fn clustered(rng: &mut SplitMix64, n: usize) -> Mesh {
     soup((0..n).map(triangle).collect())
 }
 
-fn sliver(rng: &mut SplitMix64) -> [Vec3; 3] {
+fn sliver(rng: &mut Rng) -> [Vec3; 3] {
     let (a, b) = (rng.in_cube(), rng.in_cube());
     let aspect = rng.pick(&[1e-2, 1e-4, 1e-6, 1e-8]);
     let c = a.lerp(b, rng.unit()) + aspect * rng.in_cube();
     [a, b, c].map(|v| v.as_vec3())
 }
 
-fn duplicates(rng: &mut SplitMix64, n: usize) -> Mesh {
+fn duplicates(rng: &mut Rng, n: usize) -> Mesh {
     let (vertices, triangles) = indexed(rng, 3, |rng| rng.in_cube().as_vec3().to_array());
     let copy = |_| {
         let mut triangle = rng.pick(&triangles);

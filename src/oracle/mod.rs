@@ -17,11 +17,9 @@ mod filter;
 pub mod meshes;
 mod rational;
 pub mod rays;
-mod rng;
 mod scan;
 mod source;
 
 pub use agree::{Agreement, Report, assert_agree, check_agree};
 pub use disagreement::Disagreement;
-pub use rng::SplitMix64;
 pub use scan::Answer;

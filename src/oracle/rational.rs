@@ -74,7 +74,7 @@ fn power_of_two(exponent: i64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::oracle::SplitMix64;
+    use crate::rng::Rng;
 
     fn round(numerator: i64, denominator: i64, exponent: i64) -> f32 {
         to_f32(&numerator.into(), &denominator.into(), exponent)
@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn quotients_of_f32_agree_with_the_processor() {
-        let mut rng = SplitMix64::new(1);
+        let mut rng = Rng::new(1);
         for _ in 0..10_000 {
             let [a, b] = [(); 2].map(|()| rng.below(1 << 24) as i64 + 1);
             let exponent = rng.below(280) as i64 - 150;

@@ -2,16 +2,16 @@
 
 use glam::{DVec3, Vec3};
 
-use super::rng::SplitMix64;
 use crate::mesh::TriMesh;
 use crate::ray::Ray;
+use crate::rng::Rng;
 
 /// A mesh with its bounds and a generator.
 pub(super) struct Source<'a> {
     mesh: TriMesh<'a>,
     center: DVec3,
     half: DVec3,
-    pub(super) rng: SplitMix64,
+    pub(super) rng: Rng,
 }
 
 impl<'a> Source<'a> {
@@ -20,7 +20,7 @@ impl<'a> Source<'a> {
         let min = points().reduce(DVec3::min).unwrap_or(DVec3::ZERO);
         let max = points().reduce(DVec3::max).unwrap_or(DVec3::ZERO);
         let (center, half) = (0.5 * (min + max), 0.5 * (max - min));
-        Self { mesh: *mesh, center, half, rng: SplitMix64::new(seed) }
+        Self { mesh: *mesh, center, half, rng: Rng::new(seed) }
     }
 
     pub(super) fn center(&self) -> DVec3 {

@@ -1,16 +1,24 @@
 //! Scenes for the tests.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use glam::Vec3;
-use octogrid::Model;
+use octogrid::builtin;
 use octogrid::oracle::meshes::{Mesh, closed_mesh, cuboid};
 
 /// Small scenes by name.
-pub(crate) fn generated_scenes() -> Vec<(String, Mesh)> {
+pub(crate) fn small_scenes() -> Vec<(String, Mesh)> {
     let closed = (0..5).map(|levels| (format!("closed mesh {levels}"), closed_mesh(levels.into(), levels)));
     closed.chain([("cube".to_owned(), cuboid(Vec3::splat(-1.0), Vec3::ONE))]).collect()
+}
+
+/// All built-in scenes by name.
+pub(crate) fn builtin_scenes() -> impl Iterator<Item = (&'static str, Mesh)> {
+    builtin::all().iter().map(|scene| {
+        let model = (scene.model)();
+        (scene.name, (model.vertices, model.triangles))
+    })
 }
 
 /// The OBJ files in the folder that the environment variable OCTOGRID_SCENES names, sorted; none
@@ -24,18 +32,4 @@ pub(crate) fn scene_files() -> Vec<PathBuf> {
     files.retain(|path| path.extension().is_some_and(|extension| extension == "obj"));
     files.sort();
     files
-}
-
-/// Reads the lines `v x y z` and `f a b c` of an OBJ file and skips the others.
-pub(crate) fn read_obj(path: &Path) -> Model {
-    let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    let mut model = Model::default();
-    for line in text.lines() {
-        match *line.split_whitespace().collect::<Vec<_>>() {
-            ["v", x, y, z] => model.vertices.push([x, y, z].map(|x| x.parse().unwrap())),
-            ["f", a, b, c] => model.triangles.push([a, b, c].map(|i| i.parse::<u32>().unwrap() - 1)),
-            _ => {}
-        }
-    }
-    model
 }

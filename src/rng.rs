@@ -1,4 +1,6 @@
-//! SplitMix64 (Steele, Lea, Flood 2014): a tiny generator with the same numbers on every platform.
+//! Rng (Steele, Lea, Flood 2014): a tiny generator with the same numbers on every platform.
+
+use glam::DVec3;
 
 /// A deterministic random number generator. Not for secrets.
 #[derive(Clone, Debug)]
@@ -31,9 +33,52 @@ impl Rng {
         low + (high - low) * self.unit()
     }
 
+    /// Uniform in [-1, 1).
+    pub fn signed(&mut self) -> f64 {
+        2.0 * self.unit() - 1.0
+    }
+
     /// Uniform in 0..n, but for a bias below n / 2^64; 0 where n is 0.
     pub fn below(&mut self, n: usize) -> usize {
         ((u128::from(self.bits()) * n as u128) >> 64) as usize
+    }
+
+    /// An integer in [-`n`, `n`], as f32.
+    pub fn integer(&mut self, n: usize) -> f32 {
+        self.below(2 * n + 1) as f32 - n as f32
+    }
+
+    /// One of the elements.
+    ///
+    /// # Panics
+    /// Where there are none.
+    pub fn pick<T: Copy>(&mut self, from: &[T]) -> T {
+        from[self.below(from.len())]
+    }
+
+    /// Uniform in the cube [-1, 1)^3.
+    pub fn in_cube(&mut self) -> DVec3 {
+        DVec3::from_array([(); 3].map(|()| self.signed()))
+    }
+
+    /// Uniform on the unit sphere.
+    pub fn on_sphere(&mut self) -> DVec3 {
+        loop {
+            let p = self.in_cube();
+            if (1e-6..=1.0).contains(&p.length_squared()) {
+                return p.normalize();
+            }
+        }
+    }
+
+    /// Any f32 bits but those of NaN and infinity.
+    pub fn finite(&mut self) -> f32 {
+        loop {
+            let x = f32::from_bits(self.bits() as u32);
+            if x.is_finite() {
+                return x;
+            }
+        }
     }
 }
 

@@ -12,7 +12,8 @@ use crate::triangle::{Vec3Lanes, cross, dot, minus};
 ///
 /// With A the largest absolute coordinate relative to the middle of the box and E that of an edge,
 /// the errors stay below 2^-20 A (box axes), 2^-20 A E (cross products) and 2^-18 A E E (normal):
-/// those of the inputs are 2^-24 A and 2^-24 E. What overflows excludes nothing.
+/// those of the inputs are 2^-24 A and 2^-24 E. Where something overflows, so does its bound, and
+/// infinite and NaN bounds exclude nothing.
 #[inline(always)]
 pub(crate) fn overlapping<L: Lanes>(lanes: L, corners: [Vec3Lanes<L>; 3], bounds: &Aabb) -> u32 {
     let middle = bounds.center();
@@ -25,8 +26,11 @@ pub(crate) fn overlapping<L: Lanes>(lanes: L, corners: [Vec3Lanes<L>; 3], bounds
     let edges = [minus::<L>(c1, c0), minus::<L>(c2, c1), minus::<L>(c0, c2)];
     let a = largest(lanes, &v);
     let e = largest(lanes, &edges);
-    let eps_a = lanes.splat(2f32.powi(-20)) * a + lanes.splat(f32::MIN_POSITIVE);
-    let eps_ae = eps_a * e + lanes.splat(f32::MIN_POSITIVE);
+    // 4 A, 4 A E and 16 A E E are above every intermediate value, so that they overflow first.
+    let bound = |most: L::F32| lanes.splat(2f32.powi(-22)) * most + lanes.splat(f32::MIN_POSITIVE);
+    let a4 = lanes.splat(4.0) * a;
+    let (eps_a, eps_ae) = (bound(a4), bound(a4 * e));
+    let eps_aee = bound(lanes.splat(16.0) * (a4 * e * e));
 
     let mut apart = lanes.less(lanes.splat(1.0), lanes.splat(0.0));
     for axis in 0..3 {
@@ -42,7 +46,6 @@ pub(crate) fn overlapping<L: Lanes>(lanes: L, corners: [Vec3Lanes<L>; 3], bounds
     }
     let normal = cross::<L>(edges[0], edges[1]);
     let reach = dot::<L>(half, normal.map(|n| lanes.abs(n)));
-    let eps_aee = lanes.splat(4.0) * eps_ae * e + lanes.splat(f32::MIN_POSITIVE);
     apart = apart | lanes.less(reach + eps_aee, lanes.abs(dot::<L>(normal, v[0])));
     !lanes.bits(apart) & 0xff
 }
@@ -68,7 +71,7 @@ fn separated<L: Lanes>(lanes: L, [a, b, c]: &[L::F32; 3], reach: L::F32) -> L::M
 mod tests {
     use super::*;
     use crate::cluster::Cluster;
-    use crate::lanes::Portable;
+    use crate::lanes::{Isa, Portable, dispatch};
     use glam::Vec3;
 
     fn overlaps(triangle: [[f32; 3]; 3], lo: [f32; 3], hi: [f32; 3]) -> bool {
@@ -100,5 +103,21 @@ mod tests {
         let huge = [[3e38, 0.0, 0.0], [-3e38, 1e38, 0.0], [0.0, -3e38, 1.0]];
         assert!(overlaps(huge, [-1.0; 3], [1.0; 3]));
         assert!(overlaps(huge, [-3e38; 3], [3e38; 3]));
+    }
+
+    #[test]
+    fn a_box_around_a_corner_overlaps_at_every_scale() {
+        let mut rng = crate::rng::Rng::new(1);
+        for i in 0..4000 {
+            let scale = 10f32.powi(i % 76 - 38);
+            let corners = [(); 3].map(|()| (rng.in_cube().as_vec3()) * scale);
+            let cluster = Cluster::new(&[(0, corners)]);
+            let half = Vec3::splat(0.01 * scale);
+            let bounds = Aabb { lo: corners[1] - half, hi: corners[1] + half };
+            for isa in Isa::available() {
+                let mask = dispatch!(isa, lanes => overlapping(lanes, cluster.lanes(lanes), &bounds));
+                assert_eq!(mask, 0xff, "{isa} {corners:?}");
+            }
+        }
     }
 }

@@ -105,7 +105,7 @@ fn parts(step: Step) -> (Vec<(General<2>, u32)>, Vec<(Halves, u32)>, Step) {
             let inside = general.step(axis, rises);
             assert_eq!(
                 (inside, general.voxel, general.exit),
-                (halves.step(axis, rises), halves.voxel, halves.exit)
+                (halves.step(axis, rises), halves.voxel, *halves.exit())
             );
             if inside == (step == Step::Sibling) {
                 all.0.push((before.0, rises));
@@ -145,8 +145,8 @@ fn step_halves((_, parts, step): (Vec<(General<2>, u32)>, Vec<(Halves, u32)>, St
     let mut sum = 0;
     for (part, rises) in black_box(&parts) {
         let mut part = *part;
-        let axis = first_exit(&part.exit);
-        let time = part.exit[axis];
+        let axis = first_exit(part.exit());
+        let time = part.exit()[axis];
         part.step(axis, *rises);
         let part = if step == Step::OtherwiseDivided { part.descend(time, *rises) } else { part };
         sum += part.voxel;

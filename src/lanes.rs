@@ -8,12 +8,12 @@
 
 use std::ops::{Add, BitAnd, BitOr, Mul, Sub};
 
-use fearless_simd::{Level, Simd, SimdBase, SimdFloat, SimdMask, f32x8, mask32x8};
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f64x4, mask32x8};
 
 /// Lanes in one operation.
 pub(crate) const WIDTH: usize = 8;
 
-/// Eight f32 lanes: the operations that the kernels need, and no more.
+/// Eight f32 or four f64 lanes: the operations that the kernels need, and no more.
 pub(crate) trait Lanes: Copy {
     /// Eight values.
     type F32: Copy + Add<Output = Self::F32> + Sub<Output = Self::F32> + Mul<Output = Self::F32>;
@@ -36,6 +36,18 @@ pub(crate) trait Lanes: Copy {
     fn less(self, a: Self::F32, b: Self::F32) -> Self::Mask;
     /// The mask as bits, lane 0 lowest.
     fn bits(self, mask: Self::Mask) -> u32;
+
+    /// Four f64 values.
+    type F64: Copy + Sub<Output = Self::F64> + Mul<Output = Self::F64>;
+
+    /// The same f64 in four lanes.
+    fn splat4(self, x: f64) -> Self::F64;
+    /// Four f64.
+    fn load4(self, x: &[f64; 4]) -> Self::F64;
+    /// The four f64.
+    fn store4(self, x: Self::F64) -> [f64; 4];
+    /// a where `below` < a, else b; and where it is a, as bits.
+    fn select_above4(self, below: Self::F64, a: Self::F64, b: Self::F64) -> (Self::F64, u32);
 }
 
 /// Lanes of an instruction set that was found at run time.
@@ -78,6 +90,26 @@ impl<S: Simd> Lanes for Dispatched<S> {
     fn bits(self, mask: mask32x8<S>) -> u32 {
         mask.to_bitmask() as u32
     }
+
+    type F64 = f64x4<S>;
+
+    #[inline(always)]
+    fn splat4(self, x: f64) -> f64x4<S> {
+        f64x4::splat(self.0, x)
+    }
+    #[inline(always)]
+    fn load4(self, x: &[f64; 4]) -> f64x4<S> {
+        f64x4::from_slice(self.0, x)
+    }
+    #[inline(always)]
+    fn store4(self, x: f64x4<S>) -> [f64; 4] {
+        x.into()
+    }
+    #[inline(always)]
+    fn select_above4(self, below: f64x4<S>, a: f64x4<S>, b: f64x4<S>) -> (f64x4<S>, u32) {
+        let above = below.simd_lt(a);
+        (above.select(a, b), above.to_bitmask() as u32)
+    }
 }
 
 /// Runs `$body` with `$lanes` bound to the lanes of the instruction set `$isa`.
@@ -99,6 +131,11 @@ impl Isa {
     /// The best one of this processor.
     pub fn detect() -> Self {
         Self(Level::new())
+    }
+
+    /// The one that the crate is compiled for.
+    pub(crate) fn baseline() -> Self {
+        Self(Level::baseline())
     }
 
     /// All that this processor has, the best one last.
@@ -197,6 +234,26 @@ mod portable {
         fn bits(self, mask: wide::f32x8) -> u32 {
             mask.to_bitmask()
         }
+
+        type F64 = wide::f64x4;
+
+        #[inline(always)]
+        fn splat4(self, x: f64) -> wide::f64x4 {
+            wide::f64x4::splat(x)
+        }
+        #[inline(always)]
+        fn load4(self, x: &[f64; 4]) -> wide::f64x4 {
+            wide::f64x4::from(*x)
+        }
+        #[inline(always)]
+        fn store4(self, x: wide::f64x4) -> [f64; 4] {
+            x.into()
+        }
+        #[inline(always)]
+        fn select_above4(self, below: wide::f64x4, a: wide::f64x4, b: wide::f64x4) -> (wide::f64x4, u32) {
+            let above = below.simd_lt(a);
+            (above.select(a, b), above.to_bitmask())
+        }
     }
 }
 
@@ -214,6 +271,9 @@ mod tests {
         let (low, high) =
             (lanes.min(lanes.load(&b), lanes.splat(1.0)), lanes.max(lanes.load(&b), lanes.splat(1.0)));
         assert_eq!(lanes.bits(lanes.less(low, high)), 0b1111_0111);
+        let (a, b) = (lanes.load4(&[1.0, 2.0, 3.0, f64::NAN]), lanes.splat4(9.0));
+        let (selected, bits) = lanes.select_above4(lanes.splat4(1.5), a, b);
+        assert_eq!((lanes.store4(selected), bits), ([9.0, 2.0, 3.0, 9.0], 0b0110));
     }
 
     #[test]

@@ -53,7 +53,7 @@ pub(crate) fn query<L: Lanes, Q: Query>(lanes: L, arena: &Arena, walk: Walk, ray
     // The walks end by running out of voxels or by `Break`; neither is news.
     let _ = match (arena.form, walk) {
         (Form::Bricks, _) => hybrid::walk(arena, &path, &mut leaf),
-        (Form::Lists { divisions: 2 }, Walk::Special) => octree::walk(arena, &path, &mut leaf),
+        (Form::Lists { divisions: 2 }, Walk::Special) => octree::walk(lanes, arena, &path, &mut leaf),
         (Form::Lists { divisions }, _) => match divisions {
             1 => uniform::walk(arena, &path, &mut leaf),
             2 => recursive::walk::<2, _>(arena, &path, &mut leaf),

@@ -9,6 +9,7 @@ use super::Visit;
 use crate::arena::{Arena, LIST_LEVELS, Voxel};
 use crate::dda::Path;
 use crate::descent::{Halves, first_exit};
+use crate::lanes::Lanes;
 
 /// The root and the levels below it.
 const LEVELS: usize = LIST_LEVELS as usize + 1;
@@ -22,7 +23,12 @@ struct Level {
 }
 
 #[inline(always)]
-pub(crate) fn walk<V: Visit>(arena: &Arena, path: &Path, visit: &mut V) -> ControlFlow<()> {
+pub(crate) fn walk<L: Lanes, V: Visit>(
+    lanes: L,
+    arena: &Arena,
+    path: &Path,
+    visit: &mut V,
+) -> ControlFlow<()> {
     let rises = !path.octant & 7;
     let exit = std::array::from_fn(|axis| (1.0 - path.origin[axis]) * path.width[axis]);
     let mut levels = [Level { part: Halves::whole(exit, path.width), first: 0 }; LEVELS];
@@ -43,7 +49,7 @@ pub(crate) fn walk<V: Visit>(arena: &Arena, path: &Path, visit: &mut V) -> Contr
             }
             Voxel::Node(first) => {
                 if depth == valid {
-                    levels[depth + 1].part = levels[depth].part.descend(time, rises);
+                    levels[depth + 1].part = levels[depth].part.descend_in(lanes, time, rises);
                     valid += 1;
                 }
                 depth += 1;
@@ -51,8 +57,8 @@ pub(crate) fn walk<V: Visit>(arena: &Arena, path: &Path, visit: &mut V) -> Contr
                 continue;
             }
         }
-        let axis = first_exit(&levels[depth].part.exit);
-        time = levels[depth].part.exit[axis];
+        let axis = first_exit(levels[depth].part.exit());
+        time = levels[depth].part.exit()[axis];
         if time > limit {
             return ControlFlow::Continue(());
         }

@@ -1,14 +1,18 @@
 //! A scene ready for queries.
 
+use std::ops::ControlFlow;
+
 use crate::arena::Arena;
 use crate::build::{self, BuildError, BuildOptions, Structure};
+use crate::cluster::Cluster;
+use crate::dda::rounds_to;
 use crate::descent::Walk;
 use crate::hit::Hit;
 use crate::lanes::dispatch;
 use crate::mesh::TriMesh;
 use crate::query::{All, Any, Closest, Query};
 use crate::ray::Ray;
-use crate::traverse;
+use crate::traverse::{self, Visit};
 use crate::validate::{self, Statistics, Violation};
 
 /// Triangles in a voxel structure, ready for queries.
@@ -88,11 +92,41 @@ impl Scene {
 
     /// Runs any query.
     pub fn query<Q: Query>(&self, ray: &Ray, query: &mut Q) {
-        let walk = match self.options.structure {
+        let walk = self.walk();
+        dispatch!(self.options.isa, lanes => traverse::query(lanes, &self.arena, walk, ray, query));
+    }
+
+    /// Visits the clusters near a ray voxel by voxel, without testing them: for intersection tests of
+    /// your own. `Break` ends the walk, as do the end of the scene and the ray's `t_max`.
+    ///
+    /// No cluster with a triangle that the ray meets within its interval is left out. One that lies in
+    /// several voxels comes several times.
+    ///
+    /// ```
+    /// use octogrid::{Ray, Scene, builtin};
+    /// use std::ops::ControlFlow;
+    /// let scene = Scene::build(&builtin::cube().mesh()?, &Default::default())?;
+    /// let mut triangles = 0;
+    /// scene.clusters_along(&Ray::new([0.1, 0.2, 9.0], [0.0, 0.0, -1.0]), |cluster| {
+    ///     triangles += cluster.occupied().count_ones();
+    ///     ControlFlow::Continue(())
+    /// });
+    /// assert!(triangles >= 2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn clusters_along(&self, ray: &Ray, each: impl FnMut(&Cluster) -> ControlFlow<()>) {
+        let mut clusters = Each { arena: &self.arena, limit: rounds_to(ray.t_max), each };
+        if ray.is_valid() {
+            let walk = self.walk();
+            dispatch!(self.options.isa, lanes => traverse::visit(lanes, &self.arena, walk, ray, &mut clusters));
+        }
+    }
+
+    fn walk(&self) -> Walk {
+        match self.options.structure {
             Structure::Octree(_) => self.options.walk,
             _ => Walk::General,
-        };
-        dispatch!(self.options.isa, lanes => traverse::query(lanes, &self.arena, walk, ray, query));
+        }
     }
 
     /// The number of triangles of the mesh.
@@ -116,5 +150,24 @@ impl Scene {
     /// The first invariant that does not hold; that would be a defect of this crate.
     pub fn validate(&self) -> Result<Statistics, Violation> {
         validate::validate(&self.arena, self.triangles)
+    }
+}
+
+/// Hands each cluster on.
+struct Each<'a, F> {
+    arena: &'a Arena,
+    limit: f64,
+    each: F,
+}
+
+impl<F: FnMut(&Cluster) -> ControlFlow<()>> Visit for Each<'_, F> {
+    #[inline(always)]
+    fn cluster(&mut self, index: u32) -> ControlFlow<()> {
+        (self.each)(&self.arena.clusters[index as usize])
+    }
+
+    #[inline(always)]
+    fn limit(&self) -> f64 {
+        self.limit
     }
 }

@@ -14,26 +14,25 @@ use std::ops::ControlFlow;
 
 use super::Visit;
 use super::brick::{BrickPath, mirror, mirror_index};
-use super::leaf::LeafTest;
 use crate::arena::{Arena, BRICK_LEVELS, BoxGroup, Voxel};
 use crate::dda::{Dda, Path, signed_strides};
 use crate::lanes::Lanes;
-use crate::query::Query;
 use crate::triangle::Vec3Lanes;
 
 #[inline(always)]
-pub(crate) fn walk<L: Lanes, Q: Query>(
+pub(crate) fn walk<L: Lanes, V: Visit>(
+    lanes: L,
     arena: &Arena,
     path: &Path,
-    leaf: &mut LeafTest<'_, L, Q>,
+    visit: &mut V,
 ) -> ControlFlow<()> {
     let strides = signed_strides(arena.grid.strides(), path.octant);
     let mut dda = Dda::new(path, &arena.grid);
-    let mut bricks = Bricks::new(arena, path, leaf);
+    let mut bricks = Bricks::new(lanes, arena, path, visit);
     loop {
-        bricks.leaf.enter();
+        bricks.visit.enter();
         let word = &arena.words[dda.voxel as usize];
-        bricks.leaf.read(word);
+        bricks.visit.read(word);
         match word.get() {
             Voxel::Empty => {}
             Voxel::Leaf(first) => bricks.groups(first)?,
@@ -61,10 +60,11 @@ struct Frame {
 }
 
 /// What the walk needs below the top grid.
-struct Bricks<'w, 'a, L: Lanes, Q> {
-    arena: &'w Arena,
-    path: &'w Path,
-    leaf: &'w mut LeafTest<'a, L, Q>,
+struct Bricks<'a, L: Lanes, V> {
+    lanes: L,
+    arena: &'a Arena,
+    path: &'a Path,
+    visit: &'a mut V,
     /// No hit comes after this time.
     limit: f32,
     /// Where time is 0, relative to the grid's lower corner.
@@ -73,10 +73,9 @@ struct Bricks<'w, 'a, L: Lanes, Q> {
     slope: Vec3Lanes<L>,
 }
 
-impl<'w, 'a, L: Lanes, Q: Query> Bricks<'w, 'a, L, Q> {
+impl<'a, L: Lanes, V: Visit> Bricks<'a, L, V> {
     #[inline(always)]
-    fn new(arena: &'w Arena, path: &'w Path, leaf: &'w mut LeafTest<'a, L, Q>) -> Self {
-        let lanes = leaf.lanes;
+    fn new(lanes: L, arena: &'a Arena, path: &'a Path, visit: &'a mut V) -> Self {
         let mirrored = |axis: usize| path.octant >> axis & 1 != 0;
         let origin = std::array::from_fn(|axis| {
             let p = path.origin[axis];
@@ -86,14 +85,14 @@ impl<'w, 'a, L: Lanes, Q: Query> Bricks<'w, 'a, L, Q> {
             let w = path.width[axis] as f32;
             lanes.splat(if mirrored(axis) { -w } else { w })
         });
-        let mut bricks = Self { arena, path, leaf, limit: 0.0, origin, slope };
+        let mut bricks = Self { lanes, arena, path, visit, limit: 0.0, origin, slope };
         bricks.update_limit();
         bricks
     }
 
     #[inline(always)]
     fn update_limit(&mut self) {
-        self.limit = (self.path.time(self.leaf.limit()) as f32).next_up();
+        self.limit = (self.path.time(self.visit.limit()) as f32).next_up();
     }
 
     /// Visits the occupied voxels of a brick that the path meets, front to back, and what is below.
@@ -120,8 +119,8 @@ impl<'w, 'a, L: Lanes, Q: Query> Bricks<'w, 'a, L, Q> {
             let brick = &self.arena.bricks[frame.brick as usize];
             let before = brick.occupied & ((1 << (index ^ flip)) - 1);
             let word = &self.arena.words[(brick.first + before.count_ones()) as usize];
-            self.leaf.enter();
-            self.leaf.read(word);
+            self.visit.enter();
+            self.visit.read(word);
             match word.get() {
                 Voxel::Empty => {}
                 Voxel::Leaf(first) => self.groups(first)?,
@@ -137,21 +136,21 @@ impl<'w, 'a, L: Lanes, Q: Query> Bricks<'w, 'a, L, Q> {
     #[inline(always)]
     fn frame(&mut self, index: u32, times: BrickPath) -> Frame {
         let brick = &self.arena.bricks[index as usize];
-        self.leaf.read(brick);
+        self.visit.read(brick);
         let occupied = mirror(brick.occupied, self.path.octant);
-        Frame { brick: index, times, mask: occupied & times.mask(self.leaf.lanes, self.limit) }
+        Frame { brick: index, times, mask: occupied & times.mask(self.lanes, self.limit) }
     }
 
     /// Tests the box groups of a leaf from `first` on, and the clusters whose boxes the path meets.
     #[inline(always)]
     fn groups(&mut self, first: u32) -> ControlFlow<()> {
         for group in &self.arena.groups[first as usize..] {
-            self.leaf.read(group);
+            self.visit.read(group);
             let mut met = self.boxes(group);
             while met != 0 {
                 let lane = met.trailing_zeros() as usize;
                 met &= met - 1;
-                self.leaf.cluster(group.clusters[lane].cluster())?;
+                self.visit.cluster(group.clusters[lane].cluster())?;
             }
             self.update_limit();
             if group.clusters[0].is_last() {
@@ -164,7 +163,7 @@ impl<'w, 'a, L: Lanes, Q: Query> Bricks<'w, 'a, L, Q> {
     /// The boxes that the path meets up to the limit, as bits: the slabs of eight boxes at once.
     #[inline(always)]
     fn boxes(&self, group: &BoxGroup) -> u32 {
-        let lanes = self.leaf.lanes;
+        let lanes = self.lanes;
         let (mut start, mut end) = (lanes.splat(0.0), lanes.splat(self.limit));
         for axis in 0..3 {
             let mirrored = (self.path.octant >> axis & 1) as usize;

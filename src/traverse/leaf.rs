@@ -37,7 +37,7 @@ impl Mailbox {
 
 /// Tests leaves for one ray and query.
 pub(crate) struct LeafTest<'a, L: Lanes, Q> {
-    pub(crate) lanes: L,
+    lanes: L,
     arena: &'a Arena,
     ray: &'a Ray,
     scale: Scale,
@@ -53,17 +53,22 @@ impl<'a, L: Lanes, Q: Query> LeafTest<'a, L, Q> {
         let ray_lanes = RayLanes::splat(lanes, ray, scale);
         Self { lanes, arena, ray, scale, ray_lanes, mailbox: Mailbox::EMPTY, query }
     }
+}
 
-    /// Tests all clusters, for a ray that no walk can follow.
-    #[cold]
-    #[inline(never)]
-    pub(crate) fn every_cluster(&mut self) -> ControlFlow<()> {
-        (0..self.arena.clusters.len() as u32).try_for_each(|index| self.cluster(index))
+impl<L: Lanes, Q: Query> Visit for LeafTest<'_, L, Q> {
+    #[inline(always)]
+    fn enter(&mut self) {
+        self.query.on_voxel();
+    }
+
+    #[inline(always)]
+    fn read<T>(&mut self, data: &T) {
+        self.query.on_read(data);
     }
 
     /// Tests one cluster, unless that was done just now.
     #[inline(always)]
-    pub(crate) fn cluster(&mut self, index: u32) -> ControlFlow<()> {
+    fn cluster(&mut self, index: u32) -> ControlFlow<()> {
         if !self.mailbox.is_new(index) {
             return ControlFlow::Continue(());
         }
@@ -82,30 +87,6 @@ impl<'a, L: Lanes, Q: Query> LeafTest<'a, L, Q> {
             if at.t > self.ray.t_min && at.t <= self.query.t_max() {
                 self.query.accept(Hit { t: at.t, u: at.u, v: at.v, prim })?;
                 self.ray_lanes.t_max = self.lanes.splat(self.scale.time(self.query.t_max()));
-            }
-        }
-        ControlFlow::Continue(())
-    }
-}
-
-impl<L: Lanes, Q: Query> Visit for LeafTest<'_, L, Q> {
-    #[inline(always)]
-    fn enter(&mut self) {
-        self.query.on_voxel();
-    }
-
-    #[inline(always)]
-    fn read<T>(&mut self, data: &T) {
-        self.query.on_read(data);
-    }
-
-    #[inline(always)]
-    fn leaf(&mut self, first: u32) -> ControlFlow<()> {
-        for reference in &self.arena.references[first as usize..] {
-            self.query.on_read(reference);
-            self.cluster(reference.cluster())?;
-            if reference.is_last() {
-                break;
             }
         }
         ControlFlow::Continue(())

@@ -5,7 +5,7 @@
 
 use std::ops::ControlFlow;
 
-use super::Visit;
+use super::{Visit, list};
 use crate::arena::{Arena, LIST_LEVELS, Voxel};
 use crate::dda::Path;
 use crate::descent::{Halves, first_exit};
@@ -44,7 +44,7 @@ pub(crate) fn walk<L: Lanes, V: Visit>(
         match word.get() {
             Voxel::Empty => {}
             Voxel::Leaf(first) => {
-                visit.leaf(first)?;
+                list(arena, first, visit)?;
                 limit = path.time(visit.limit());
             }
             Voxel::Node(first) => {

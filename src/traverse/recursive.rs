@@ -6,7 +6,7 @@
 
 use std::ops::ControlFlow;
 
-use super::Visit;
+use super::{Visit, list};
 use crate::arena::{Arena, LIST_LEVELS, Voxel};
 use crate::dda::{Dda, Path, signed_strides};
 use crate::descent::{General, first_exit};
@@ -40,7 +40,7 @@ pub(crate) fn walk<const N: u32, V: Visit>(arena: &Arena, path: &Path, visit: &m
         match word.get() {
             Voxel::Empty => {}
             Voxel::Leaf(first) => {
-                visit.leaf(first)?;
+                list(arena, first, visit)?;
                 limit = path.time(visit.limit());
             }
             Voxel::Node(first) => {

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::Visit;
+use super::{Visit, list};
 use crate::arena::{Arena, Voxel};
 use crate::dda::{Dda, Path, signed_strides};
 
@@ -16,7 +16,7 @@ pub(crate) fn walk<V: Visit>(arena: &Arena, path: &Path, visit: &mut V) -> Contr
         let word = &arena.words[dda.voxel as usize];
         visit.read(word);
         if let Voxel::Leaf(first) = word.get() {
-            visit.leaf(first)?;
+            list(arena, first, visit)?;
             limit = path.time(visit.limit());
         }
         let axis = dda.axis();

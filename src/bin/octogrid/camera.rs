@@ -79,6 +79,11 @@ impl Pinhole {
         Self { eye: view.eye, forward, right: right * width, up: right.cross(forward) * height, size }
     }
 
+    /// The number of pixels.
+    pub(crate) fn pixels(&self) -> usize {
+        self.size[0] as usize * self.size[1] as usize
+    }
+
     /// The ray through the centre of a pixel, counted from the upper left; its direction has length 1.
     pub(crate) fn ray(&self, pixel: usize) -> Ray {
         let width = self.size[0] as usize;

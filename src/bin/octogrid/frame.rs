@@ -37,13 +37,15 @@ impl Rate {
     }
 }
 
-/// The rates of both kinds of rays of an image.
+/// The rates of the kinds of rays of an image.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Rates {
     /// Rays from the eye.
     pub(crate) primary: Rate,
     /// Rays to lights.
     pub(crate) shadow: Rate,
+    /// Rays from lights and on from surfaces.
+    pub(crate) scattered: Rate,
 }
 
 /// The closest hits.
@@ -64,16 +66,23 @@ pub(crate) fn in_bands<T>(
     band: usize,
     mut work: impl FnMut(Range<usize>) -> Vec<T>,
 ) -> Vec<T> {
-    let bar = ProgressBar::new(pixels as u64);
+    let mut image = Vec::with_capacity(pixels);
+    each_band(pixels, band, |band| image.extend(work(band)));
+    image
+}
+
+/// Goes through the numbers below `end` band by band, with a progress bar on a terminal.
+pub(crate) fn each_band(end: usize, band: usize, mut work: impl FnMut(Range<usize>)) {
+    let bar = ProgressBar::new(end as u64);
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent}% {eta}") {
         bar.set_style(style);
     }
-    let mut image = Vec::with_capacity(pixels);
-    while image.len() < pixels {
-        let end = pixels.min(image.len() + band.max(1));
-        image.extend(work(image.len()..end));
-        bar.set_position(image.len() as u64);
+    let mut done = 0;
+    while done < end {
+        let next = end.min(done + band.max(1));
+        work(done..next);
+        done = next;
+        bar.set_position(done as u64);
     }
     bar.finish_and_clear();
-    image
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 use octogrid::{Hit, Ray, Scene};
 
 use crate::frame::{self, Rates};
-use crate::shade::{Shading, transmittance};
+use crate::shade::{Shading, Surface, transmittance};
 
 /// Layers of glass that the eye looks through at most.
 const MOST_LAYERS: usize = 16;
@@ -13,7 +13,7 @@ const MOST_LAYERS: usize = 16;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     /// Radiance of lights and lit surfaces.
-    pub(crate) direct: Vec3,
+    pub(crate) radiance: Vec3,
     /// Diffuse reflectance of what is seen, for light that comes from everywhere.
     pub(crate) albedo: Vec3,
     /// The part of what is seen that lies behind the scene.
@@ -28,8 +28,16 @@ struct Sight {
 }
 
 /// The samples of primary rays, layer by layer from front to back.
-pub(crate) fn samples(shading: &Shading, scene: &Scene, rays: Vec<Ray>, rates: &mut Rates) -> Vec<Sample> {
-    let nothing = Sample { direct: Vec3::ZERO, albedo: Vec3::ZERO, background: 0.0 };
+///
+/// `light` tells what surfaces receive, over pi.
+pub(crate) fn samples(
+    shading: &Shading,
+    scene: &Scene,
+    rays: Vec<Ray>,
+    rates: &mut Rates,
+    mut light: impl FnMut(&[Surface], &mut Rates) -> Vec<Vec3>,
+) -> Vec<Sample> {
+    let nothing = Sample { radiance: Vec3::ZERO, albedo: Vec3::ZERO, background: 0.0 };
     let mut samples = vec![nothing; rays.len()];
     let sight = |(pixel, ray)| Sight { pixel, ray, weight: Vec3::ONE };
     let mut sights: Vec<Sight> = rays.into_iter().enumerate().map(sight).collect();
@@ -39,23 +47,24 @@ pub(crate) fn samples(shading: &Shading, scene: &Scene, rays: Vec<Ray>, rates: &
         }
         let rays: Vec<Ray> = sights.iter().map(|s| s.ray).collect();
         let hits = frame::closest(scene, &rays, &mut rates.primary);
-        add_layer(shading, &sights, &hits, &mut samples, rates);
+        let met = sights.iter().zip(&hits).filter(|(_, hit)| hit.is_hit());
+        let surfaces: Vec<_> = met.map(|(sight, hit)| shading.surface(&sight.ray, hit)).collect();
+        let light = light(&surfaces, rates);
+        add_layer(shading, &sights, &hits, &light, &mut samples);
         sights = sights.iter().zip(&hits).filter_map(|(sight, hit)| beyond(shading, sight, hit)).collect();
     }
     samples
 }
 
-/// Adds what the sights meet first.
-fn add_layer(shading: &Shading, sights: &[Sight], hits: &[Hit], samples: &mut [Sample], rates: &mut Rates) {
-    let met = || sights.iter().zip(hits).filter(|(_, hit)| hit.is_hit());
-    let surfaces: Vec<_> = met().map(|(sight, hit)| shading.surface(&sight.ray, hit)).collect();
-    let light = shading.light(&surfaces, &mut rates.shadow);
-    for ((sight, hit), light) in met().zip(light) {
+/// Adds what the sights meet first; `light` has an element for each that meets something.
+fn add_layer(shading: &Shading, sights: &[Sight], hits: &[Hit], light: &[Vec3], samples: &mut [Sample]) {
+    let met = sights.iter().zip(hits).filter(|(_, hit)| hit.is_hit());
+    for ((sight, hit), light) in met.zip(light) {
         let material = shading.material(hit.prim);
         let weight = sight.weight * material.opacity.clamp(0.0, 1.0);
         let albedo = weight * Vec3::from_array(material.diffuse);
         let sample = &mut samples[sight.pixel];
-        sample.direct += albedo * light + sight.weight * Vec3::from_array(material.emission);
+        sample.radiance += albedo * light + sight.weight * Vec3::from_array(material.emission);
         sample.albedo += albedo;
     }
     for (sight, _) in sights.iter().zip(hits).filter(|(_, hit)| !hit.is_hit()) {

@@ -8,6 +8,7 @@ mod camera;
 mod failure;
 mod frame;
 mod heat;
+mod integrators;
 mod layers;
 mod legend;
 mod lights;

@@ -1,4 +1,4 @@
-//! Rays from a NumPy file, hits to one.
+//! Rays from a NumPy file, hits and images to one.
 //!
 //! The header is read here rather than by `npyz`, which trusts the lengths and nesting that a file
 //! claims; a damaged file must give an error, not exhaust memory or the stack.
@@ -152,6 +152,21 @@ pub(crate) fn write_rows<T: AutoSerialize>(
     for row in rows {
         writer.push(&row)?;
     }
+    writer.finish()
+}
+
+/// Writes an image: float32, shape (height, width, 3), C order.
+///
+/// # Errors
+/// Where `file` does.
+pub(crate) fn write_image(
+    file: &mut impl Write,
+    [width, height]: [u32; 2],
+    pixels: impl Iterator<Item = [f32; 3]>,
+) -> io::Result<()> {
+    let shape = [height.into(), width.into(), 3];
+    let mut writer = npyz::WriteOptions::new().default_dtype().shape(&shape).writer(file).begin_nd()?;
+    writer.extend(pixels.flatten())?;
     writer.finish()
 }
 

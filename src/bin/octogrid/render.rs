@@ -11,18 +11,19 @@ use crate::args::{BuildArgs, Choice};
 use crate::camera::{CameraArg, Pinhole, Viewpoint};
 use crate::failure::Failure;
 use crate::frame::{self, Rate, Rates};
+use crate::integrators::{Integrator, Settings};
 use crate::load::{self, Loaded};
 use crate::output::{Output, say};
 use crate::pool::ThreadArgs;
 use crate::shade::Shading;
-use crate::{heat, layers, legend, table, tone, viewpoint};
+use crate::{heat, integrators, legend, npy, table, tone, viewpoint};
 
 /// Rays in flight at once, to keep memory and progress steady.
 const BAND: usize = 1 << 18;
 /// The largest picture, in pixels.
 const MAX_PIXELS: u64 = 1 << 26;
 
-/// Render a picture of a scene with direct light
+/// Render a picture of a scene
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// An OBJ file or the name of a built-in scene
@@ -42,6 +43,11 @@ pub(crate) struct Args {
     /// What to show
     #[arg(long, value_enum, default_value = "shaded")]
     view: View,
+    #[command(flatten)]
+    integrator: Settings,
+    /// Also write the radiance of the shaded view, float32 of shape (height, width, 3)
+    #[arg(long, value_name = "FILE.npy")]
+    linear: Option<PathBuf>,
     /// The number of a built-in camera, or EYE:TARGET[:FOV] such as 0,1,5:0,0,0:60
     #[arg(long, value_name = "CAMERA", allow_hyphen_values = true)]
     camera: Option<CameraArg>,
@@ -53,9 +59,9 @@ pub(crate) struct Args {
 }
 
 /// The values of `--view`.
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum View {
-    /// Direct light
+    /// Light
     Shaded,
     /// Surface normals as colours
     Normals,
@@ -78,14 +84,19 @@ enum Up {
 /// On wrong parameters, on files that can't be read or written, and where the build fails.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let options = args.build.options(args.structure)?;
+    let shaded = args.view == View::Shaded;
+    if !shaded && (args.linear.is_some() || args.integrator.integrator != Integrator::Direct) {
+        return Err(Failure::Usage("--integrator and --linear need --view shaded".into()));
+    }
     let output = Output::at(&args.output)?;
+    let linear = args.linear.as_deref().map(Output::at).transpose()?;
     let loaded = load::load(&args.scene)?;
     let (picture, summary) = args.threads.run(|| {
         let (scene, build_ms) = load::build(&loaded.model, &options)?;
         let camera = camera(args, &loaded, &scene)?;
         let shading = Shading::new(&loaded.model, &scene, up(args.up));
         let mut rates = Rates::default();
-        let picture = picture(args, &camera, &shading, &scene, &mut rates);
+        let picture = picture(args, &camera, &shading, &scene, linear.as_ref(), &mut rates)?;
         Ok((picture, summary(&loaded, &scene, build_ms, shading.lights(), &rates)))
     })?;
     let mut png = std::io::Cursor::new(Vec::new());
@@ -123,15 +134,26 @@ fn camera(args: &Args, loaded: &Loaded, scene: &Scene) -> Result<Pinhole, Failur
     Ok(Pinhole::new(&view, up(args.up), args.size))
 }
 
-fn picture(args: &Args, camera: &Pinhole, shading: &Shading, scene: &Scene, rates: &mut Rates) -> RgbImage {
-    let pixels = args.size[0] as usize * args.size[1] as usize;
+fn picture(
+    args: &Args,
+    camera: &Pinhole,
+    shading: &Shading,
+    scene: &Scene,
+    linear: Option<&Output>,
+    rates: &mut Rates,
+) -> Result<RgbImage, Failure> {
+    let pixels = camera.pixels();
     let mut range = [0; 2];
     let colours: Vec<[u8; 3]> = match args.view {
         View::Shaded => {
-            let samples = frame::in_bands(pixels, BAND / shading.lights().max(1), |band| {
-                layers::samples(shading, scene, frame::primary_rays(camera, band), rates)
-            });
-            tone::expose(&samples, shading.lights() > 0)
+            let samples = integrators::samples(&args.integrator, shading, scene, camera, rates)?;
+            if let Some(file) = linear {
+                let radiance = samples.iter().map(|s| s.radiance.to_array());
+                file.write(|file| npy::write_image(file, args.size, radiance))?;
+            }
+            // The other integrators find the light that direct has to guess.
+            let ambient = args.integrator.integrator == Integrator::Direct && shading.lights() > 0;
+            tone::expose(&samples, ambient)
         }
         View::Normals => frame::in_bands(pixels, BAND, |band| {
             let rays = frame::primary_rays(camera, band);
@@ -159,7 +181,7 @@ fn picture(args: &Args, camera: &Pinhole, shading: &Shading, scene: &Scene, rate
     if matches!(args.view, View::Heat) {
         legend::draw(&mut picture, range);
     }
-    picture
+    Ok(picture)
 }
 
 /// Grey by distance, from white to dark; misses are black.
@@ -190,6 +212,8 @@ fn summary(
         ("primary, Mray/s", rate(&rates.primary)),
         ("shadow rays", rates.shadow.rays().to_string()),
         ("shadow, Mray/s", rate(&rates.shadow)),
+        ("scattered rays", rates.scattered.rays().to_string()),
+        ("scattered, Mray/s", rate(&rates.scattered)),
     ])
 }
 

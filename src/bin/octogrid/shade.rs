@@ -9,17 +9,21 @@ use crate::lights::Light;
 use crate::survey::{bounds, corners};
 
 /// Glass surfaces that light goes through at most; beyond it is dark.
-const MOST_GLASS: usize = 32;
+pub(crate) const MOST_GLASS: usize = 32;
 
 /// A point on a surface, on the side that is seen.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
     /// Off the surface by a little, so that rays from here don't meet it.
-    point: DVec3,
+    pub(crate) point: DVec3,
     /// Of length 1.
-    normal: DVec3,
-    /// Towards the eye, of length 1.
-    to_eye: DVec3,
+    pub(crate) normal: DVec3,
+    /// Back along the ray that met it, of length 1.
+    pub(crate) to_eye: DVec3,
+    /// Whether this is the side from which the triangle's corners run counter-clockwise.
+    pub(crate) front: bool,
+    /// Where the ray met it.
+    pub(crate) hit: Hit,
 }
 
 /// A scene with its lights.
@@ -49,6 +53,21 @@ impl<'a> Shading<'a> {
         self.lights.len()
     }
 
+    /// All triangles.
+    pub(crate) fn triangles(&self) -> std::ops::Range<u32> {
+        0..self.model.triangles.len() as u32
+    }
+
+    /// The corners of a triangle.
+    pub(crate) fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        corners(self.model, triangle)
+    }
+
+    /// How far rays start and end from surfaces.
+    pub(crate) fn offset(&self) -> f64 {
+        self.offset
+    }
+
     /// The material of a triangle.
     pub(crate) fn material(&self, triangle: u32) -> &Material {
         self.model.material(triangle).unwrap_or(&self.default)
@@ -64,9 +83,10 @@ impl<'a> Shading<'a> {
         let [a, b, c] = corners(self.model, hit.prim);
         let to_eye = -ray.dir.as_dvec3().normalize();
         let normal = (b - a).cross(c - a).normalize_or(to_eye);
-        let normal = if normal.dot(to_eye) < 0.0 { -normal } else { normal };
+        let front = normal.dot(to_eye) >= 0.0;
+        let normal = if front { normal } else { -normal };
         let point = a + (b - a) * f64::from(hit.u) + (c - a) * f64::from(hit.v);
-        Surface { point: point + normal * self.offset, normal, to_eye }
+        Surface { point: point + normal * self.offset, normal, to_eye, front, hit: *hit }
     }
 
     /// The light that each surface receives, over pi: what white would send back.
@@ -95,7 +115,7 @@ impl<'a> Shading<'a> {
     }
 
     /// How much light comes through along each ray.
-    fn transmittances(&self, rays: &[Ray], shadow: &mut Rate) -> Vec<Vec3> {
+    pub(crate) fn transmittances(&self, rays: &[Ray], shadow: &mut Rate) -> Vec<Vec3> {
         if self.glass {
             let through = || rays.par_iter().map(|ray| self.through_glass(ray)).collect();
             return shadow.time(rays.len(), through);

@@ -19,11 +19,11 @@ const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 /// Exposes for the image's log-average luminance.
 pub(crate) fn expose(samples: &[Sample], ambient: bool) -> Vec<[u8; 3]> {
     let ambient = if ambient {
-        AMBIENT * mean(samples, |s| s.direct) / mean(samples, |s| s.albedo).max(1e-6)
+        AMBIENT * mean(samples, |s| s.radiance) / mean(samples, |s| s.albedo).max(1e-6)
     } else {
         0.0
     };
-    let radiance = |s: &Sample| s.direct + ambient * s.albedo;
+    let radiance = |s: &Sample| s.radiance + ambient * s.albedo;
     let exposure = MIDDLE / log_average(samples.iter().map(|s| radiance(s).dot(LUMINANCE)));
     samples
         .iter()

@@ -1,6 +1,8 @@
 //! The command as scripts see it: arguments in, exit code, output and files out.
 #![cfg(feature = "cli")]
 
+#[path = "cli/integrators.rs"]
+mod integrators;
 #[path = "cli/malformed.rs"]
 mod malformed;
 #[path = "cli/support.rs"]

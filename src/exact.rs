@@ -26,27 +26,37 @@ pub(crate) fn two_product(a: f64, b: f64) -> (f64, f64) {
     (product, ((ah * bh - product) + ah * bl + al * bh) + al * bl)
 }
 
-/// Terms that the largest expression can have: t * det with t an f64 and det of 96 terms, less
-/// a numerator of 192.
-const CAPACITY: usize = 384;
-
-/// An exact sum of f64 terms.
+/// An exact sum of up to `N` f64 terms.
+///
+/// A difference of two f64 has 2 terms, a product twice the product of its factors' terms, a sum the
+/// sum of its terms.
 #[derive(Clone, Copy)]
-pub(crate) struct Expansion {
-    terms: [f64; CAPACITY],
+pub(crate) struct Expansion<const N: usize> {
+    terms: [f64; N],
     len: usize,
 }
 
-impl Expansion {
-    pub(crate) const ZERO: Self = Self { terms: [0.0; CAPACITY], len: 0 };
+/// A component of a difference of vectors.
+pub(crate) type Difference = Expansion<2>;
 
+/// A component of a cross product of differences.
+pub(crate) type Cross = Expansion<16>;
+
+/// A dot product of a difference and a cross product.
+pub(crate) type Triple = Expansion<192>;
+
+impl Difference {
     /// a - b.
-    pub(crate) fn difference(a: f64, b: f64) -> Self {
+    pub(crate) fn new(a: f64, b: f64) -> Self {
         let mut e = Self::ZERO;
         e.grow(a);
         e.grow(-b);
         e
     }
+}
+
+impl<const N: usize> Expansion<N> {
+    const ZERO: Self = Self { terms: [0.0; N], len: 0 };
 
     /// Adds one term.
     fn grow(&mut self, term: f64) {
@@ -72,7 +82,7 @@ impl Expansion {
     }
 
     /// Adds `sign * a * b`.
-    fn add_product(&mut self, a: &Self, b: &Self, sign: f64) {
+    fn add_product<const A: usize, const B: usize>(&mut self, a: &Expansion<A>, b: &Expansion<B>, sign: f64) {
         for &x in a.terms() {
             for &y in b.terms() {
                 let (product, error) = two_product(x, sign * y);
@@ -83,15 +93,10 @@ impl Expansion {
     }
 
     /// self - other.
-    pub(crate) fn minus(mut self, other: &Self) -> Self {
-        other.terms().iter().for_each(|&x| self.grow(-x));
-        self
-    }
-
-    /// self * x.
-    pub(crate) fn scaled(&self, x: f64) -> Self {
-        let mut e = Self::ZERO;
-        e.add_product(self, &Self::difference(x, 0.0), 1.0);
+    pub(crate) fn minus<const B: usize, const R: usize>(&self, other: &Expansion<B>) -> Expansion<R> {
+        let mut e = Expansion::ZERO;
+        self.terms().iter().for_each(|&x| e.grow(x));
+        other.terms().iter().for_each(|&x| e.grow(-x));
         e
     }
 
@@ -107,8 +112,8 @@ impl Expansion {
 }
 
 /// The dot product.
-pub(crate) fn dot(a: &[Expansion; 3], b: &[Expansion; 3]) -> Expansion {
-    let mut e = Expansion::ZERO;
+pub(crate) fn dot(a: &[Difference; 3], b: &[Cross; 3]) -> Triple {
+    let mut e = Triple::ZERO;
     for axis in 0..3 {
         e.add_product(&a[axis], &b[axis], 1.0);
     }
@@ -116,10 +121,10 @@ pub(crate) fn dot(a: &[Expansion; 3], b: &[Expansion; 3]) -> Expansion {
 }
 
 /// The cross product.
-pub(crate) fn cross(a: &[Expansion; 3], b: &[Expansion; 3]) -> [Expansion; 3] {
+pub(crate) fn cross(a: &[Difference; 3], b: &[Difference; 3]) -> [Cross; 3] {
     std::array::from_fn(|axis| {
         let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
-        let mut e = Expansion::ZERO;
+        let mut e = Cross::ZERO;
         e.add_product(&a[j], &b[k], 1.0);
         e.add_product(&a[k], &b[j], -1.0);
         e
@@ -129,7 +134,7 @@ pub(crate) fn cross(a: &[Expansion; 3], b: &[Expansion; 3]) -> [Expansion; 3] {
 /// numerator / denominator rounded to the nearest f32, ties to even; a zero is positive.
 ///
 /// The denominator must not be zero.
-pub(crate) fn divide_to_f32(numerator: &Expansion, denominator: &Expansion) -> f32 {
+pub(crate) fn divide_to_f32(numerator: &Triple, denominator: &Triple) -> f32 {
     let estimate = (numerator.estimate() / denominator.estimate()) as f32;
     let mut t = estimate.clamp(f32::MIN, f32::MAX);
     // The estimate is good to 2^-50, so the nearest f32 is at most one step away.
@@ -149,8 +154,10 @@ pub(crate) fn divide_to_f32(numerator: &Expansion, denominator: &Expansion) -> f
 }
 
 /// The sign of numerator / denominator - x.
-fn compare(numerator: &Expansion, denominator: &Expansion, x: f64) -> f64 {
-    numerator.minus(&denominator.scaled(x)).sign() * denominator.sign()
+fn compare(numerator: &Triple, denominator: &Triple, x: f64) -> f64 {
+    let mut rest: Expansion<576> = numerator.minus(&Difference::ZERO);
+    rest.add_product(denominator, &Difference::new(x, 0.0), -1.0);
+    rest.sign() * denominator.sign()
 }
 
 /// Halfway between two neighbouring f32, exact in f64; beyond the largest one as if the range went on.
@@ -168,14 +175,14 @@ pub(crate) fn midpoint(low: f32, high: f32) -> f64 {
 mod tests {
     use super::*;
 
-    fn value(x: f64) -> Expansion {
-        Expansion::difference(x, 0.0)
+    fn value(x: f64) -> Triple {
+        Difference::new(x, 0.0).minus(&Difference::ZERO)
     }
 
     #[test]
     fn cancellation_leaves_the_exact_rest() {
         let big = value(1e30);
-        let sum = big.minus(&value(-1.0)).minus(&big);
+        let sum: Triple = big.minus::<192, 192>(&value(-1.0)).minus(&big);
         assert_eq!((sum.sign(), sum.estimate()), (1.0, 1.0));
         let (product, error) = two_product(1.0 + f64::EPSILON, 1.0 - f64::EPSILON);
         assert_eq!((product, error), (1.0, -f64::EPSILON * f64::EPSILON));
@@ -183,10 +190,10 @@ mod tests {
 
     #[test]
     fn the_vectors_of_a_right_handed_system() {
-        let v = |x: [f64; 3]| x.map(value);
+        let v = |x: [f64; 3]| x.map(|x| Difference::new(x, 0.0));
         let n = cross(&v([3.0, 0.0, 0.0]), &v([0.0, 5.0, 0.0]));
         assert_eq!(n.map(|e| e.estimate()), [0.0, 0.0, 15.0]);
-        assert_eq!(dot(&n, &v([7.0, 7.0, 2.0])).estimate(), 30.0);
+        assert_eq!(dot(&v([7.0, 7.0, 2.0]), &n).estimate(), 30.0);
     }
 
     #[test]
@@ -203,7 +210,7 @@ mod tests {
         assert_eq!(div(1.2e-45, -1.0).to_bits(), (-f32::from_bits(1)).to_bits());
         assert_eq!(div(1e-46, -1.0).to_bits(), 0);
         // Just above a tie that f64 cannot see.
-        let above_tie = value(1.0 + 0.5 * ulp).minus(&value(-1e-40));
+        let above_tie: Triple = value(1.0 + 0.5 * ulp).minus(&value(-1e-40));
         assert_eq!(divide_to_f32(&above_tie, &value(1.0)), 1.0f32.next_up());
     }
 

@@ -20,7 +20,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::exact::{self, Expansion};
+use crate::exact::{self, Cross, Difference, Expansion};
 use crate::lanes::{Isa, Lanes, WIDTH, dispatch};
 use crate::query::EdgeRule;
 use crate::ray::{Ray, RayPacket};
@@ -104,8 +104,8 @@ fn decide_rounded(ray: &Ray, corners: [Vec3; 3]) -> Decision {
 #[cold]
 #[inline(never)]
 fn decide_exact(ray: &Ray, [v0, v1, v2]: [Vec3; 3], rule: EdgeRule) -> Option<Intersection> {
-    let minus = |a: Vec3, b: Vec3| -> [Expansion; 3] {
-        std::array::from_fn(|axis| Expansion::difference(f64::from(a[axis]), f64::from(b[axis])))
+    let minus = |a: Vec3, b: Vec3| -> [Difference; 3] {
+        std::array::from_fn(|axis| Difference::new(f64::from(a[axis]), f64::from(b[axis])))
     };
     let d = minus(ray.dir, Vec3::ZERO);
     let (s, e1, e2) = (minus(ray.origin, v0), minus(v1, v0), minus(v2, v0));
@@ -116,10 +116,10 @@ fn decide_exact(ray: &Ray, [v0, v1, v2]: [Vec3; 3], rule: EdgeRule) -> Option<In
     }
     let q = exact::cross(&e1, &s);
     let (w1, w2) = (exact::dot(&s, &p), exact::dot(&d, &q));
-    let w0 = det.minus(&w1).minus(&w2);
-    let edges = [(&w0, v1, v2), (&w1, v2, v0), (&w2, v0, v1)];
+    let w0: Expansion<576> = det.minus::<192, 384>(&w1).minus(&w2);
+    let edges = [(w0.sign(), v1, v2), (w1.sign(), v2, v0), (w2.sign(), v0, v1)];
     let inside = edges.into_iter().all(|(w, from, to)| {
-        let side = match (w.sign(), rule) {
+        let side = match (w, rule) {
             (0.0, EdgeRule::Crossing) => perturbed_side(&d, &minus(to, from)),
             (side, _) => side,
         };
@@ -141,8 +141,8 @@ fn decide_exact(ray: &Ray, [v0, v1, v2]: [Vec3; 3], rule: EdgeRule) -> Option<In
 /// For the edge from p to q the side is d.((p - o) x (q - o)) = d.(p x q) + o.(d x (q - p)), so the
 /// first component of d x (q - p) that is not zero decides. Source: H. Edelsbrunner and E. P. Muecke,
 /// "Simulation of Simplicity", 1990.
-fn perturbed_side(d: &[Expansion; 3], edge: &[Expansion; 3]) -> f64 {
-    exact::cross(d, edge).iter().map(Expansion::sign).find(|&sign| sign != 0.0).unwrap_or(0.0)
+fn perturbed_side(d: &[Difference; 3], edge: &[Difference; 3]) -> f64 {
+    exact::cross(d, edge).iter().map(Cross::sign).find(|&sign| sign != 0.0).unwrap_or(0.0)
 }
 
 /// Lanes of three-component vectors.

@@ -36,7 +36,7 @@ fn builtin_scenes() {
     for (name, (vertices, triangles)) in common::builtin_scenes() {
         println!("{name}");
         let mesh = TriMesh::new(&vertices, &triangles).unwrap();
-        assert_on_rays_of_all_kinds(name, &mesh, [1000, 1000, 500]);
+        assert_on_rays_of_all_kinds(name, &mesh, [1000, 1000, 100]);
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use crate::aabb::Aabb;
-use crate::exact::{self, Expansion};
+use crate::exact::{self, Difference};
 use crate::mesh::TriMesh;
 
 /// The triangles that can be hit, and how they lie.
@@ -52,8 +52,8 @@ fn is_degenerate([v0, v1, v2]: [Vec3; 3]) -> bool {
     if e1.cross(e2).abs().max_element() > bound {
         return false;
     }
-    let edge = |to: Vec3| -> [Expansion; 3] {
-        std::array::from_fn(|axis| Expansion::difference(f64::from(to[axis]), f64::from(v0[axis])))
+    let edge = |to: Vec3| -> [Difference; 3] {
+        std::array::from_fn(|axis| Difference::new(f64::from(to[axis]), f64::from(v0[axis])))
     };
     exact::cross(&edge(v1), &edge(v2)).iter().all(|e| e.sign() == 0.0)
 }

@@ -91,7 +91,7 @@ fn extreme_scales() {
 fn scene_files() {
     let files = common::scene_files();
     if files.is_empty() {
-        println!("OCTOGRID_SCENES is not set or holds no OBJ file: the sweep was skipped");
+        common::announce("OCTOGRID_SCENES is not set or holds no OBJ file: the sweep was skipped");
     }
     for path in files {
         let name = path.display().to_string();

@@ -33,3 +33,9 @@ pub(crate) fn scene_files() -> Vec<PathBuf> {
     files.sort();
     files
 }
+
+/// Says something that the test runner does not hide.
+pub(crate) fn announce(message: &str) {
+    use std::io::Write;
+    writeln!(std::io::stderr(), "{message}").expect("standard error is open");
+}

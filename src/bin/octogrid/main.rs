@@ -18,6 +18,7 @@ mod output;
 mod params;
 mod pool;
 mod render;
+mod report;
 mod scene;
 mod shade;
 mod survey;
@@ -48,6 +49,7 @@ enum Command {
     Trace(trace::Args),
     Analyze(analyze::Args),
     Scene(scene::Args),
+    Report(report::Args),
 }
 
 fn main() -> ExitCode {
@@ -56,6 +58,7 @@ fn main() -> ExitCode {
         Command::Trace(args) => trace::run(&args),
         Command::Analyze(args) => analyze::run(&args),
         Command::Scene(args) => scene::run(&args),
+        Command::Report(args) => report::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -218,7 +218,7 @@ fn summary(
 }
 
 /// `WxH` in pixels.
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
+pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let (width, height) = text.split_once('x').ok_or("not of the form WxH, such as 800x600")?;
     let number = |n: &str| n.parse::<u32>().map_err(|_| format!("'{n}' is not a number of pixels"));
     let [width, height] = [number(width)?, number(height)?];

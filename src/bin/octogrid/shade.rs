@@ -114,6 +114,11 @@ impl<'a> Shading<'a> {
         })
     }
 
+    /// The rays from a surface to all lights that it faces.
+    pub(crate) fn shadow_rays(&self, surface: &Surface) -> Vec<Ray> {
+        self.offers(0, surface).map(|(_, ray)| ray).collect()
+    }
+
     /// How much light comes through along each ray.
     pub(crate) fn transmittances(&self, rays: &[Ray], shadow: &mut Rate) -> Vec<Vec3> {
         if self.glass {

@@ -1,0 +1,143 @@
+//! Plots as SVG: a legend beside the axes, where it hides nothing.
+
+use std::error::Error;
+use std::ops::Range;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+const SIZE: (u32, u32) = (960, 560);
+/// Width of the legend.
+const LEGEND: u32 = 250;
+const FONT: &str = "sans-serif";
+/// Paul Tol's bright colours, which colour-blind people can tell apart, and two more.
+const COLOURS: [RGBColor; 10] = [
+    RGBColor(68, 119, 170),
+    RGBColor(238, 102, 119),
+    RGBColor(34, 136, 51),
+    RGBColor(204, 187, 68),
+    RGBColor(102, 204, 238),
+    RGBColor(170, 51, 119),
+    RGBColor(120, 120, 120),
+    RGBColor(0, 0, 0),
+    RGBColor(238, 119, 51),
+    RGBColor(120, 70, 20),
+];
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// Points of one colour.
+pub(super) struct Series {
+    pub(super) name: String,
+    pub(super) points: Vec<(f64, f64)>,
+    /// Whether a line joins them.
+    pub(super) joined: bool,
+}
+
+/// What axes measure, with units.
+pub(super) struct Labels<'a> {
+    pub(super) title: &'a str,
+    pub(super) x: &'a str,
+    pub(super) y: &'a str,
+}
+
+/// Series over a logarithmic x and a linear y from 0.
+pub(super) fn svg(labels: &Labels, series: &[Series]) -> Result<String, Box<dyn Error>> {
+    let mut text = String::new();
+    let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
+    area.fill(&WHITE)?;
+    let (left, right) = area.split_horizontally(SIZE.0 - LEGEND);
+    draw(&left, labels, series)?;
+    legend(&right, series)?;
+    area.present()?;
+    drop((left, right, area));
+    Ok(text)
+}
+
+fn draw(area: &Area, labels: &Labels, series: &[Series]) -> Result<(), Box<dyn Error>> {
+    let points = || series.iter().flat_map(|s| s.points.iter().copied());
+    let y = 0.0..points().map(|p| p.1).fold(f64::MIN_POSITIVE, f64::max) * 1.1;
+    let mut chart = ChartBuilder::on(area)
+        .caption(labels.title, (FONT, 18))
+        .margin(12)
+        .x_label_area_size(46)
+        .y_label_area_size(64)
+        .build_cartesian_2d(around(points().map(|p| p.0)).log_scale().base(2.0), y)?;
+    chart
+        .configure_mesh()
+        .x_desc(labels.x)
+        .y_desc(labels.y)
+        .x_labels(8)
+        .x_label_formatter(&|x| short(*x))
+        .y_label_formatter(&|y| short(*y))
+        .label_style((FONT, 13))
+        .axis_desc_style((FONT, 15))
+        .light_line_style(WHITE)
+        .draw()?;
+    for (i, series) in series.iter().enumerate() {
+        let colour = colour(i);
+        if series.joined {
+            chart.draw_series(LineSeries::new(series.points.iter().copied(), colour.stroke_width(2)))?;
+        }
+        for point in &series.points {
+            area.draw(&marker(i, chart.backend_coord(point)))?;
+        }
+    }
+    Ok(())
+}
+
+fn legend(area: &Area, series: &[Series]) -> Result<(), Box<dyn Error>> {
+    for (i, series) in series.iter().enumerate() {
+        let y = 60 + 24 * i as i32;
+        if series.joined {
+            area.draw(&PathElement::new([(6, y), (30, y)], colour(i).stroke_width(2)))?;
+        }
+        area.draw(&marker(i, (18, y)))?;
+        area.draw(&Text::new(series.name.clone(), (40, y - 7), (FONT, 14)))?;
+    }
+    Ok(())
+}
+
+/// Circles, then triangles, then crosses, so that not only colours differ.
+fn marker<'a>(i: usize, at: (i32, i32)) -> DynElement<'a, SVGBackend<'a>, (i32, i32)> {
+    let style = colour(i).filled();
+    match i % 3 {
+        0 => Circle::new(at, 4, style).into_dyn(),
+        1 => TriangleMarker::new(at, 6, style).into_dyn(),
+        _ => Cross::new(at, 4, colour(i).stroke_width(2)).into_dyn(),
+    }
+}
+
+fn colour(i: usize) -> RGBColor {
+    COLOURS[i % COLOURS.len()]
+}
+
+/// An interval with room around positive values.
+fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let positive = values.filter(|&x| x > 0.0);
+    let (low, high) = positive.fold((f64::INFINITY, 0.0), |(low, high), x| (x.min(low), x.max(high)));
+    if high > 0.0 { low / 1.3..high * 1.3 } else { 0.1..1.0 }
+}
+
+/// A number with three digits and no more zeros than it needs.
+fn short(x: f64) -> String {
+    let digits = (2.0 - x.abs().max(1e-9).log10().floor()).clamp(0.0, 9.0) as usize;
+    let text = format!("{x:.digits$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!([0.0, 0.05, 1.0, 2.5, 1000.0].map(short), ["0", "0.05", "1", "2.5", "1000"]);
+    }
+
+    #[test]
+    fn nothing_to_plot_is_no_failure() {
+        let labels = Labels { title: "none", x: "x", y: "y" };
+        assert!(svg(&labels, &[]).unwrap().contains("<svg"));
+    }
+}

@@ -27,6 +27,8 @@ fn help_is_as_documented() {
     assert_data_eq!(help(&["trace", "--help"]), snapbox::file!["cli/help-trace.txt"]);
     assert_data_eq!(help(&["analyze", "--help"]), snapbox::file!["cli/help-analyze.txt"]);
     assert_data_eq!(help(&["scene", "--help"]), snapbox::file!["cli/help-scene.txt"]);
+    assert_data_eq!(help(&["report", "--help"]), snapbox::file!["cli/help-report.txt"]);
+    assert_data_eq!(help(&["report", "paper", "--help"]), snapbox::file!["cli/help-report-paper.txt"]);
 }
 
 #[test]

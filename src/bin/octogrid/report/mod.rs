@@ -1,25 +1,16 @@
-//! `octogrid report`: the measurements of a paper, repeated.
+//! `octogrid report`: measurements, as tables, figures and plots.
 
-mod columns;
-mod conclusions;
-mod families;
-mod files;
+mod folder;
 mod machine;
-mod measure;
 mod paper;
 mod plot;
-mod published;
-mod rays;
 mod statistics;
-mod sweep;
-mod tables;
-mod verdict;
 
 use clap::Subcommand;
 
 use crate::failure::Failure;
 
-/// Repeat the measurements of a paper and judge its conclusions
+/// Measure and judge: tables, figures and plots
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     #[command(subcommand)]

@@ -11,9 +11,9 @@ use serde::Serialize;
 
 use super::columns::{Column, Measure, octree, structures};
 use super::rays::Rays;
-use super::statistics::Spread;
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
+use crate::report::statistics::Spread;
 
 /// Pieces of the rays.
 const PIECES: usize = 8;

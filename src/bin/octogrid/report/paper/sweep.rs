@@ -6,14 +6,14 @@ use octogrid::{BuildError, BuildOptions, HybridParams, Model, Scene, Structure, 
 use serde::Serialize;
 
 use super::columns::{octree, recursive};
-use super::files::Folder;
-use super::machine::Machine;
 use super::measure::kilobytes;
-use super::plot::{Labels, Series};
 use super::rays::Rays;
 use super::tables::digits;
 use crate::failure::Failure;
 use crate::output::say;
+use crate::report::folder::Folder;
+use crate::report::machine::Machine;
+use crate::report::plot::{Labels, Series};
 use crate::{load, table};
 
 /// Rays of each kind traced a point, at most.

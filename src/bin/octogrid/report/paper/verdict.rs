@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::columns::{Column, Measure, find};
-use super::statistics::Spread;
+use crate::report::statistics::Spread;
 
 /// Ratios this near to 1 are noise however small their spread.
 const BAND: f64 = 0.03;

@@ -2,8 +2,8 @@
 
 use super::columns::{Column, Measure, find};
 use super::measure::Measured;
-use super::plot::Series;
-use super::statistics::Spread;
+use crate::report::plot::Series;
+use crate::report::statistics::Spread;
 
 /// Curves by rising threshold; every other structure is a point of its own.
 const CURVES: [(&str, &[&str]); 2] = [

@@ -1,20 +1,31 @@
 //! `octogrid report paper`: Dmitriev's tables, repeated.
 
+mod columns;
+mod conclusions;
+mod families;
+mod files;
+mod measure;
+mod published;
+mod rays;
+mod sweep;
+mod tables;
+mod verdict;
+
 use std::path::PathBuf;
 
-use super::conclusions::{self, Figures};
-use super::files::{self, Folder, Report};
+use self::conclusions::Figures;
+use self::files::Report;
+use self::measure::Measured;
+use self::rays::Rays;
+use super::folder::Folder;
 use super::machine::Machine;
-use super::measure::{self, Measured};
-use super::rays::Rays;
-use super::{published, sweep, tables};
 use crate::failure::Failure;
 use crate::output::say;
 use crate::pool::ThreadArgs;
 use crate::{load, render, table};
 
 /// The paper's scenes, the large one first.
-pub(super) const SCENES: [&str; 2] = ["interior", "room"];
+const SCENES: [&str; 2] = ["interior", "room"];
 /// Rays of each kind traced a round and structure, at most, without `--full`.
 const TRACED: usize = 1 << 18;
 

@@ -6,7 +6,7 @@ use super::columns::{Column, Measure, REFERENCE, find};
 use super::conclusions::Conclusion;
 use super::measure::Measured;
 use super::published;
-use super::statistics::Spread;
+use crate::report::statistics::Spread;
 use crate::table;
 
 /// One row a structure: ours, relative to the reference, and the paper's.

@@ -6,7 +6,7 @@
 //! Lanes are used where an error bound is known, never for final answers, so that it does not matter
 //! whether an instruction set fuses a multiplication with an addition.
 
-use std::ops::{Add, BitAnd, BitOr, Mul, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
 
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f64x4, mask32x8};
 
@@ -16,7 +16,11 @@ pub(crate) const WIDTH: usize = 8;
 /// Eight f32 or four f64 lanes: the operations that the kernels need, and no more.
 pub(crate) trait Lanes: Copy {
     /// Eight values.
-    type F32: Copy + Add<Output = Self::F32> + Sub<Output = Self::F32> + Mul<Output = Self::F32>;
+    type F32: Copy
+        + Add<Output = Self::F32>
+        + Sub<Output = Self::F32>
+        + Mul<Output = Self::F32>
+        + Div<Output = Self::F32>;
     /// Eight truth values.
     type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
 
@@ -24,6 +28,10 @@ pub(crate) trait Lanes: Copy {
     fn splat(self, x: f32) -> Self::F32;
     /// A value a lane.
     fn load(self, x: &[f32; WIDTH]) -> Self::F32;
+    /// The values.
+    fn store(self, x: Self::F32) -> [f32; WIDTH];
+    /// a * b + c, rounded once where the instruction set can do it, else twice.
+    fn mul_add(self, a: Self::F32, b: Self::F32, c: Self::F32) -> Self::F32;
     /// The absolute values.
     fn abs(self, x: Self::F32) -> Self::F32;
     /// 1 or -1 with the sign of each value.
@@ -34,6 +42,8 @@ pub(crate) trait Lanes: Copy {
     fn max(self, a: Self::F32, b: Self::F32) -> Self::F32;
     /// Where a < b; false where one is NaN.
     fn less(self, a: Self::F32, b: Self::F32) -> Self::Mask;
+    /// Where a <= b; false where one is NaN.
+    fn at_most(self, a: Self::F32, b: Self::F32) -> Self::Mask;
     /// The mask as bits, lane 0 lowest.
     fn bits(self, mask: Self::Mask) -> u32;
 
@@ -67,6 +77,14 @@ impl<S: Simd> Lanes for Dispatched<S> {
         f32x8::from_slice(self.0, x)
     }
     #[inline(always)]
+    fn store(self, x: f32x8<S>) -> [f32; WIDTH] {
+        x.into()
+    }
+    #[inline(always)]
+    fn mul_add(self, a: f32x8<S>, b: f32x8<S>, c: f32x8<S>) -> f32x8<S> {
+        a.mul_add(b, c)
+    }
+    #[inline(always)]
     fn abs(self, x: f32x8<S>) -> f32x8<S> {
         x.abs()
     }
@@ -85,6 +103,10 @@ impl<S: Simd> Lanes for Dispatched<S> {
     #[inline(always)]
     fn less(self, a: f32x8<S>, b: f32x8<S>) -> mask32x8<S> {
         a.simd_lt(b)
+    }
+    #[inline(always)]
+    fn at_most(self, a: f32x8<S>, b: f32x8<S>) -> mask32x8<S> {
+        a.simd_le(b)
     }
     #[inline(always)]
     fn bits(self, mask: mask32x8<S>) -> u32 {
@@ -211,6 +233,14 @@ mod portable {
             wide::f32x8::from(*x)
         }
         #[inline(always)]
+        fn store(self, x: wide::f32x8) -> [f32; WIDTH] {
+            x.to_array()
+        }
+        #[inline(always)]
+        fn mul_add(self, a: wide::f32x8, b: wide::f32x8, c: wide::f32x8) -> wide::f32x8 {
+            a.mul_add(b, c)
+        }
+        #[inline(always)]
         fn abs(self, x: wide::f32x8) -> wide::f32x8 {
             x.abs()
         }
@@ -229,6 +259,10 @@ mod portable {
         #[inline(always)]
         fn less(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
             a.simd_lt(b)
+        }
+        #[inline(always)]
+        fn at_most(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
+            a.simd_le(b)
         }
         #[inline(always)]
         fn bits(self, mask: wide::f32x8) -> u32 {

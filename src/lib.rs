@@ -10,6 +10,7 @@ mod dda;
 pub mod descent;
 mod exact;
 mod hit;
+mod kernel;
 mod lanes;
 mod mesh;
 mod model;
@@ -33,6 +34,7 @@ pub use build::{
 };
 pub use cluster::Cluster;
 pub use hit::Hit;
+pub use kernel::Kernel;
 pub use lanes::Isa;
 pub use mesh::{MeshError, TriMesh};
 pub use model::{Material, Model};

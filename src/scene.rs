@@ -8,6 +8,7 @@ use crate::cluster::Cluster;
 use crate::dda::rounds_to;
 use crate::descent::Walk;
 use crate::hit::Hit;
+use crate::kernel::{Double, Exact, Fused, Kernel, Plain, Test};
 use crate::lanes::dispatch;
 use crate::mesh::TriMesh;
 use crate::query::{All, Any, Closest, Query};
@@ -92,8 +93,35 @@ impl Scene {
 
     /// Runs any query.
     pub fn query<Q: Query>(&self, ray: &Ray, query: &mut Q) {
+        self.run::<Exact, Q>(ray, query);
+    }
+
+    /// Runs any query with another kernel than the exact one.
+    ///
+    /// Its answers may differ from those of [`Scene::query`] where a ray passes near the edge of a
+    /// triangle or grazes it; see [`Kernel`].
+    ///
+    /// ```
+    /// use octogrid::{Closest, Kernel, Ray, Scene, builtin};
+    /// let scene = Scene::build(&builtin::cube().mesh()?, &Default::default())?;
+    /// let ray = Ray::new([0.1, 0.2, 9.0], [0.0, 0.0, -1.0]);
+    /// let mut query = Closest::new(ray.t_max);
+    /// scene.query_with(Kernel::Plain, &ray, &mut query);
+    /// assert_eq!(query.hit().prim, scene.closest(&ray).prim);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn query_with<Q: Query>(&self, kernel: Kernel, ray: &Ray, query: &mut Q) {
+        match kernel {
+            Kernel::Exact => self.run::<Exact, Q>(ray, query),
+            Kernel::Double => self.run::<Double, Q>(ray, query),
+            Kernel::Plain => self.run::<Plain, Q>(ray, query),
+            Kernel::Fused => self.run::<Fused, Q>(ray, query),
+        }
+    }
+
+    fn run<K: Test, Q: Query>(&self, ray: &Ray, query: &mut Q) {
         let walk = self.walk();
-        dispatch!(self.options.isa, lanes => traverse::query(lanes, &self.arena, walk, ray, query));
+        dispatch!(self.options.isa, lanes => traverse::query::<K, _, _>(lanes, &self.arena, walk, ray, query));
     }
 
     /// Visits the clusters near a ray voxel by voxel, without testing them: for intersection tests of

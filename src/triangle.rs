@@ -236,6 +236,12 @@ impl Scale {
         let scaled = (f64::from(t) / self.factor) as f32;
         if t.is_finite() { scaled.clamp(f32::MIN, f32::MAX) } else { t }
     }
+
+    /// The inverse of [`Scale::time`].
+    #[inline(always)]
+    pub(crate) fn unscaled(self, t: f32) -> f32 {
+        (f64::from(t) * self.factor) as f32
+    }
 }
 
 /// The lanes in which the ray may meet the triangle within its interval, as bits.

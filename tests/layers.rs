@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const LAYERS: &[(&str, &[&str])] = &[
     ("numbers", &["lanes", "aabb", "exact", "rng"]),
     ("vocabulary", &["ray", "hit", "query", "mesh", "model"]),
-    ("pieces", &["triangle", "cluster", "overlap", "arena", "descent", "dda", "validate"]),
+    ("pieces", &["triangle", "cluster", "kernel", "overlap", "arena", "descent", "dda", "validate"]),
     ("phases", &["build", "traverse"]),
     ("surface", &["scene", "stream"]),
     ("edges", &["builtin", "obj", "oracle"]),
@@ -20,6 +20,8 @@ const WITHIN: &[(&str, &str)] = &[
     ("query", "hit"),
     ("model", "mesh"),
     ("cluster", "triangle"),
+    ("kernel", "cluster"),
+    ("kernel", "triangle"),
     ("overlap", "triangle"),
     ("arena", "cluster"),
     ("dda", "arena"),

@@ -1,15 +1,17 @@
 //! Testing a leaf: its clusters against the ray, and what is hit to the query.
 
+use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
 use super::Visit;
 use crate::arena::Arena;
 use crate::dda::rounds_to;
 use crate::hit::Hit;
+use crate::kernel::{Subject, Test};
 use crate::lanes::Lanes;
 use crate::query::Query;
 use crate::ray::Ray;
-use crate::triangle::{RayLanes, Scale, candidates, intersect};
+use crate::triangle::{RayLanes, Scale};
 
 /// Clusters tested last, which need no second test.
 ///
@@ -36,26 +38,27 @@ impl Mailbox {
 }
 
 /// Tests leaves for one ray and query.
-pub(crate) struct LeafTest<'a, L: Lanes, Q> {
+pub(crate) struct LeafTest<'a, L: Lanes, K, Q> {
     lanes: L,
     arena: &'a Arena,
     ray: &'a Ray,
     scale: Scale,
     ray_lanes: RayLanes<L>,
     mailbox: Mailbox,
+    kernel: PhantomData<K>,
     query: &'a mut Q,
 }
 
-impl<'a, L: Lanes, Q: Query> LeafTest<'a, L, Q> {
+impl<'a, L: Lanes, K: Test, Q: Query> LeafTest<'a, L, K, Q> {
     #[inline(always)]
     pub(crate) fn new(lanes: L, arena: &'a Arena, ray: &'a Ray, query: &'a mut Q) -> Self {
         let scale = Scale::of(ray.dir);
         let ray_lanes = RayLanes::splat(lanes, ray, scale);
-        Self { lanes, arena, ray, scale, ray_lanes, mailbox: Mailbox::EMPTY, query }
+        Self { lanes, arena, ray, scale, ray_lanes, mailbox: Mailbox::EMPTY, kernel: PhantomData, query }
     }
 }
 
-impl<L: Lanes, Q: Query> Visit for LeafTest<'_, L, Q> {
+impl<L: Lanes, K: Test, Q: Query> Visit for LeafTest<'_, L, K, Q> {
     #[inline(always)]
     fn enter(&mut self) {
         self.query.on_voxel();
@@ -75,7 +78,7 @@ impl<L: Lanes, Q: Query> Visit for LeafTest<'_, L, Q> {
         let cluster = &self.arena.clusters[index as usize];
         self.query.on_cluster();
         self.query.on_read(cluster);
-        let mut bits = candidates(self.lanes, &self.ray_lanes, cluster.lanes(self.lanes));
+        let (mut bits, found) = K::filter(self.lanes, &self.ray_lanes, cluster);
         while bits != 0 {
             let lane = bits.trailing_zeros() as usize;
             bits &= bits - 1;
@@ -83,7 +86,8 @@ impl<L: Lanes, Q: Query> Visit for LeafTest<'_, L, Q> {
             if prim == crate::cluster::Cluster::NO_TRIANGLE {
                 break;
             }
-            let Some(at) = intersect(self.ray, cluster.triangle(lane), Q::RULE) else { continue };
+            let subject = Subject { ray: self.ray, cluster, lane, rule: Q::RULE };
+            let Some(at) = K::decide(self.lanes, &found, &subject) else { continue };
             if at.t > self.ray.t_min && at.t <= self.query.t_max() {
                 self.query.accept(Hit { t: at.t, u: at.u, v: at.v, prim })?;
                 self.ray_lanes.t_max = self.lanes.splat(self.scale.time(self.query.t_max()));

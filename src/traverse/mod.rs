@@ -15,6 +15,7 @@ use std::ops::ControlFlow;
 use crate::arena::{Arena, Form};
 use crate::dda::{Clip, Path};
 use crate::descent::Walk;
+use crate::kernel::Test;
 use crate::lanes::Lanes;
 use crate::query::Query;
 use crate::ray::Ray;
@@ -50,9 +51,15 @@ fn list<V: Visit>(arena: &Arena, first: u32, visit: &mut V) -> ControlFlow<()> {
 
 /// Runs a query over a structure.
 #[inline(always)]
-pub(crate) fn query<L: Lanes, Q: Query>(lanes: L, arena: &Arena, walk: Walk, ray: &Ray, query: &mut Q) {
+pub(crate) fn query<K: Test, L: Lanes, Q: Query>(
+    lanes: L,
+    arena: &Arena,
+    walk: Walk,
+    ray: &Ray,
+    query: &mut Q,
+) {
     if ray.is_valid() {
-        visit(lanes, arena, walk, ray, &mut LeafTest::new(lanes, arena, ray, query));
+        visit(lanes, arena, walk, ray, &mut LeafTest::<L, K, Q>::new(lanes, arena, ray, query));
     }
 }
 

@@ -9,7 +9,9 @@ use crate::cluster::Cluster;
 use crate::lanes::Lanes;
 use crate::query::EdgeRule;
 use crate::ray::Ray;
-use crate::triangle::{Intersection, RayLanes, Scale, Vec3Lanes, candidates, intersect, minus};
+use crate::triangle::{
+    Intersection, RayLanes, Scale, Vec3Lanes, candidates, cross, dot, intersect, minus, unfused,
+};
 
 /// A way to intersect a ray with triangles, for [`Scene::query_with`](crate::Scene::query_with).
 ///
@@ -108,7 +110,7 @@ impl Test for Plain {
 
     #[inline(always)]
     fn filter<L: Lanes>(lanes: L, ray: &RayLanes<L>, cluster: &Cluster) -> (u32, Vec3Lanes<L>) {
-        moeller_trumbore(lanes, ray, cluster.lanes(lanes), |a, b, c| a * b + c)
+        moeller_trumbore(lanes, ray, cluster.lanes(lanes), unfused::<L>)
     }
 
     #[inline(always)]
@@ -141,15 +143,9 @@ fn moeller_trumbore<L: Lanes>(
     mul_add: impl Fn(L::F32, L::F32, L::F32) -> L::F32,
 ) -> (u32, Vec3Lanes<L>) {
     let zero = lanes.splat(0.0);
-    let dot = |a: Vec3Lanes<L>, b: Vec3Lanes<L>| mul_add(a[0], b[0], mul_add(a[1], b[1], a[2] * b[2]));
-    let cross = |a: Vec3Lanes<L>, b: Vec3Lanes<L>| -> Vec3Lanes<L> {
-        std::array::from_fn(|i| {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            mul_add(a[j], b[k], zero - a[k] * b[j])
-        })
-    };
+    let dot = |a, b| dot::<L>(a, b, &mul_add);
     let (s, e1, e2) = (minus::<L>(ray.origin, v0), minus::<L>(v1, v0), minus::<L>(v2, v0));
-    let (p, q) = (cross(e2, ray.dir), cross(e1, s));
+    let (p, q) = (cross::<L>(e2, ray.dir, &mul_add), cross::<L>(e1, s, &mul_add));
     let inverse = lanes.splat(1.0) / dot(e1, p);
     let [t, u, v] = [dot(e2, q), dot(s, p), dot(ray.dir, q)].map(|x| x * inverse);
     // Written so that NaN, which stems from a determinant of zero, fails.

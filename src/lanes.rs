@@ -6,7 +6,7 @@
 //! Lanes are used where an error bound is known, never for final answers, so that it does not matter
 //! whether an instruction set fuses a multiplication with an addition.
 
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f64x4, mask32x8};
 
@@ -20,7 +20,8 @@ pub(crate) trait Lanes: Copy {
         + Add<Output = Self::F32>
         + Sub<Output = Self::F32>
         + Mul<Output = Self::F32>
-        + Div<Output = Self::F32>;
+        + Div<Output = Self::F32>
+        + Neg<Output = Self::F32>;
     /// Eight truth values.
     type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
 

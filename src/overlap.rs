@@ -6,7 +6,7 @@
 
 use crate::aabb::Aabb;
 use crate::lanes::Lanes;
-use crate::triangle::{Vec3Lanes, cross, dot, minus};
+use crate::triangle::{Vec3Lanes, cross, dot, minus, unfused};
 
 /// The lanes whose triangle may overlap `bounds`, as bits.
 ///
@@ -44,9 +44,9 @@ pub(crate) fn overlapping<L: Lanes>(lanes: L, corners: [Vec3Lanes<L>; 3], bounds
             apart = apart | separated(lanes, &coordinates, reach + eps_ae);
         }
     }
-    let normal = cross::<L>(edges[0], edges[1]);
-    let reach = dot::<L>(half, normal.map(|n| lanes.abs(n)));
-    apart = apart | lanes.less(reach + eps_aee, lanes.abs(dot::<L>(normal, v[0])));
+    let normal = cross::<L>(edges[0], edges[1], unfused::<L>);
+    let reach = dot::<L>(half, normal.map(|n| lanes.abs(n)), unfused::<L>);
+    apart = apart | lanes.less(reach + eps_aee, lanes.abs(dot::<L>(normal, v[0], unfused::<L>)));
     !lanes.bits(apart) & 0xff
 }
 

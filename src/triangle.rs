@@ -254,9 +254,10 @@ impl Scale {
 #[inline(always)]
 pub(crate) fn candidates<L: Lanes>(lanes: L, ray: &RayLanes<L>, [v0, v1, v2]: [Vec3Lanes<L>; 3]) -> u32 {
     let size = |[x, y, z]: Vec3Lanes<L>| lanes.max(lanes.max(lanes.abs(x), lanes.abs(y)), lanes.abs(z));
+    let fused = |a, b, c| lanes.mul_add(a, b, c);
     let (s, e1, e2) = (minus::<L>(ray.origin, v0), minus::<L>(v1, v0), minus::<L>(v2, v0));
-    let (p, q) = (cross::<L>(e2, ray.dir), cross::<L>(e1, s));
-    let (det, w1, w2) = (dot::<L>(e1, p), dot::<L>(s, p), dot::<L>(ray.dir, q));
+    let (p, q) = (cross::<L>(e2, ray.dir, fused), cross::<L>(e1, s, fused));
+    let (det, w1, w2) = (dot::<L>(e1, p, fused), dot::<L>(s, p, fused), dot::<L>(ray.dir, q, fused));
     let zero = lanes.splat(0.0);
     let abs = lanes.abs(det);
     let sign = lanes.sign(det);
@@ -268,7 +269,7 @@ pub(crate) fn candidates<L: Lanes>(lanes: L, ray: &RayLanes<L>, [v0, v1, v2]: [V
     let slack = eps * (e16 * (a + e));
     let outside =
         lanes.less(w1 + slack, zero) | lanes.less(w2 + slack, zero) | lanes.less(abs + slack, w1 + w2);
-    let numerator = sign * dot::<L>(e2, q);
+    let numerator = sign * dot::<L>(e2, q, fused);
     let slack = |t: L::F32| eps * (e16 * (e * (a + lanes.abs(t)) + lanes.splat(2f32.powi(-80))));
     let beyond = lanes.less(ray.t_max * abs + slack(ray.t_max), numerator)
         | lanes.less(numerator + slack(ray.t_min), ray.t_min * abs);
@@ -281,14 +282,33 @@ pub(crate) fn minus<L: Lanes>(a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> Vec3Lanes<L> 
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
+/// `mul_add` computes a * b + c, rounded once or twice.
 #[inline(always)]
-pub(crate) fn cross<L: Lanes>(a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> Vec3Lanes<L> {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+pub(crate) fn cross<L: Lanes>(
+    a: Vec3Lanes<L>,
+    b: Vec3Lanes<L>,
+    mul_add: impl Fn(L::F32, L::F32, L::F32) -> L::F32,
+) -> Vec3Lanes<L> {
+    std::array::from_fn(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        mul_add(a[j], b[k], -(a[k] * b[j]))
+    })
 }
 
+/// As [`cross`].
 #[inline(always)]
-pub(crate) fn dot<L: Lanes>(a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> L::F32 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+pub(crate) fn dot<L: Lanes>(
+    a: Vec3Lanes<L>,
+    b: Vec3Lanes<L>,
+    mul_add: impl Fn(L::F32, L::F32, L::F32) -> L::F32,
+) -> L::F32 {
+    mul_add(a[2], b[2], mul_add(a[1], b[1], a[0] * b[0]))
+}
+
+/// a * b + c, both operations rounded.
+#[inline(always)]
+pub(crate) fn unfused<L: Lanes>(a: L::F32, b: L::F32, c: L::F32) -> L::F32 {
+    a * b + c
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use octogrid::{BuildError, BuildOptions, HybridParams, Model, Scene, Structure, 
 use serde::Serialize;
 
 use super::columns::{octree, recursive};
-use super::measure::kilobytes;
+use super::measure::{built, kilobytes};
 use super::rays::Rays;
 use super::tables::digits;
 use crate::failure::Failure;
@@ -14,12 +14,16 @@ use crate::output::say;
 use crate::report::folder::Folder;
 use crate::report::machine::Machine;
 use crate::report::plot::{Labels, Series};
+use crate::report::statistics::Spread;
 use crate::{load, table};
 
 /// Rays of each kind traced a point, at most.
 const TRACED: usize = 1 << 16;
-/// The least time of so many runs counts.
+/// The least time of so many runs counts at first.
 const RUNS: usize = 3;
+/// So many of the fastest of each structure are measured once more, in turns.
+const FINALISTS: usize = 4;
+const ROUNDS: usize = 5;
 /// From this many triangles on every other point is left out, to stay within minutes.
 const LARGE: usize = 200_000;
 /// A point that needs more is left out.
@@ -30,8 +34,12 @@ const MEMORY_LIMIT: usize = 2 << 30;
 struct Point {
     family: &'static str,
     structure: String,
+    #[serde(skip)]
+    parameters: Structure,
     /// Seconds of the queries of a whole image.
     rendering: f64,
+    /// Whether these are the median of interleaved rounds.
+    finalist: bool,
     /// Kilobytes of the voxels.
     memory: f64,
     /// Seconds of the build.
@@ -56,7 +64,10 @@ pub(super) fn run(scenes: &[String], size: [u32; 2], folder: &Folder) -> Result<
     for (i, name) in scenes.iter().enumerate() {
         let loaded = load::load(name)?;
         let rays = Rays::new(&loaded, size, TRACED)?;
-        let points = points(&loaded.model, &rays)?;
+        let mut points = points(&loaded.model, &rays)?;
+        for family in Structure::ALL.map(|structure| structure.name()) {
+            finals(&loaded.model, &rays, family, &mut points)?;
+        }
         let (triangles, rays) = (loaded.model.triangles.len(), rays.total());
         let sweep = Sweep { scene: name, triangles, rays, points: &points, best: best(&points) };
         say(format_args!("{}{}", if i > 0 { "\n" } else { "" }, summary(&sweep)))?;
@@ -76,6 +87,8 @@ fn points(model: &Model, rays: &Rays) -> Result<Vec<Point>, Failure> {
             Ok(scene) => points.push(Point {
                 family: structure.name(),
                 structure: structure.to_string(),
+                parameters: structure,
+                finalist: false,
                 preprocessing: start.elapsed().as_secs_f64(),
                 memory: kilobytes(&scene)?,
                 rendering: (0..RUNS).map(|_| render(&scene, rays)).fold(f64::INFINITY, f64::min),
@@ -85,6 +98,26 @@ fn points(model: &Model, rays: &Rays) -> Result<Vec<Point>, Failure> {
         }
     }
     Ok(points)
+}
+
+/// Measures the fastest points of a structure again, in turns, so that noise favours none of them.
+fn finals(model: &Model, rays: &Rays, family: &str, points: &mut [Point]) -> Result<(), Failure> {
+    let mut finalists: Vec<&mut Point> = points.iter_mut().filter(|p| p.family == family).collect();
+    finalists.sort_by(|a, b| a.rendering.total_cmp(&b.rendering));
+    finalists.truncate(FINALISTS);
+    let built = finalists.iter().map(|point| built(model, point.parameters));
+    let scenes: Vec<Scene> = built.map(|scene| Ok(scene?.0)).collect::<Result<_, Failure>>()?;
+    let mut seconds = vec![Vec::new(); scenes.len()];
+    for _ in 0..ROUNDS {
+        for (scene, seconds) in scenes.iter().zip(&mut seconds) {
+            seconds.push(render(scene, rays));
+        }
+    }
+    for (point, seconds) in finalists.into_iter().zip(&seconds) {
+        point.finalist = true;
+        point.rendering = Spread::of(seconds).map_or(point.rendering, |spread| spread.median);
+    }
+    Ok(())
 }
 
 /// What a plot shows along x.
@@ -121,10 +154,10 @@ fn render(scene: &Scene, rays: &Rays) -> f64 {
     primary * rays.primary.factor() + shadow * rays.shadow.factor()
 }
 
-/// The fastest of each structure.
+/// The fastest finalist of each structure.
 fn best(points: &[Point]) -> Vec<&Point> {
     let families = Structure::ALL.map(|structure| structure.name());
-    let of = |family| points.iter().filter(move |p| p.family == family);
+    let of = |family| points.iter().filter(move |p| p.finalist && p.family == family);
     families.into_iter().filter_map(|f| of(f).min_by(|a, b| a.rendering.total_cmp(&b.rendering))).collect()
 }
 

@@ -91,8 +91,8 @@ impl Structure {
         density: 0.1,
         levels: 3,
         group_cost: 0.5,
-        brick_cost: 1.5,
-        voxel_cost: 0.5,
+        brick_cost: 12.0,
+        voxel_cost: 2.0,
     });
     /// All four with default parameters.
     pub const ALL: [Structure; 4] = [Self::UNIFORM, Self::RECURSIVE, Self::OCTREE, Self::HYBRID];

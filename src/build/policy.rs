@@ -15,8 +15,8 @@ pub(crate) trait Policy {
     /// How divided voxels and leaves are stored.
     fn form(&self) -> Form;
 
-    /// Whether to try and divide a voxel.
-    fn divides(&self, voxel: &VoxelView<'_>) -> bool;
+    /// Whether to try and divide a voxel that costs `leaf_cost` as a leaf.
+    fn divides(&self, voxel: &VoxelView<'_>, leaf_cost: f32) -> bool;
 
     /// The cost of a voxel as a leaf. A divided voxel is kept only if it costs less.
     fn leaf_cost(&self, _voxel: &VoxelView<'_>) -> f32 {
@@ -48,7 +48,7 @@ impl Policy for Uniform {
     fn form(&self) -> Form {
         Form::Lists { divisions: 1 }
     }
-    fn divides(&self, _: &VoxelView<'_>) -> bool {
+    fn divides(&self, _: &VoxelView<'_>, _: f32) -> bool {
         false
     }
 }
@@ -80,7 +80,7 @@ impl Policy for Recursive {
     fn form(&self) -> Form {
         Form::Lists { divisions: self.params.divisions }
     }
-    fn divides(&self, voxel: &VoxelView<'_>) -> bool {
+    fn divides(&self, voxel: &VoxelView<'_>, _: f32) -> bool {
         voxel.triangles() > self.params.threshold as usize
     }
 }
@@ -109,7 +109,7 @@ impl Policy for Octree {
     /// The paper's loop over triangles sorted by plane, with the budget that its text asks for
     /// (`(PLANE_WEIGHT + 1) * VX_THRESHOLD`, where the printed code starts at VX_THRESHOLD): each
     /// triangle costs 1 and each plane after the first PLANE_WEIGHT on top.
-    fn divides(&self, voxel: &VoxelView<'_>) -> bool {
+    fn divides(&self, voxel: &VoxelView<'_>, _: f32) -> bool {
         let weight = self.params.plane_weight as usize;
         let budget = (weight + 1).saturating_mul(self.params.threshold as usize);
         let triangles = voxel.triangles();
@@ -151,9 +151,9 @@ impl Policy for Hybrid {
         Form::Bricks
     }
 
-    /// A leaf of one group is as cheap as a leaf gets.
-    fn divides(&self, voxel: &VoxelView<'_>) -> bool {
-        voxel.items.len() > crate::lanes::WIDTH
+    /// A leaf of one group is as cheap as a leaf gets, and a brick costs more than to enter it.
+    fn divides(&self, voxel: &VoxelView<'_>, leaf_cost: f32) -> bool {
+        voxel.items.len() > crate::lanes::WIDTH && leaf_cost > self.params.brick_cost
     }
 
     fn leaf_cost(&self, voxel: &VoxelView<'_>) -> f32 {

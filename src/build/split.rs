@@ -159,7 +159,8 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
         let bounds = cube.enlarged(self.limits.margin);
         let view = VoxelView { items: &self.items[range.clone()], clusters: &self.arena.clusters, bounds };
         let leaf_cost = self.policy.leaf_cost(&view);
-        if self.may_divide(cube, depth) && self.policy.divides(&view) && self.separates(&view, cube.side) {
+        let divides = self.may_divide(cube, depth) && self.policy.divides(&view, leaf_cost);
+        if divides && self.separates(&view, cube.side) {
             let mark = self.mark();
             if let Some((word, cost)) = self.divide(range.clone(), cube, depth)?
                 && cost < leaf_cost

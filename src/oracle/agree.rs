@@ -37,11 +37,11 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    /// The four structures with default parameters, one thread, all rays against exact arithmetic:
-    /// for many small cases.
+    /// The four structures with default parameters and a hybrid of many bricks, one thread, all rays
+    /// against exact arithmetic: for many small cases.
     pub fn quick() -> Self {
         Self {
-            structures: Structure::ALL.to_vec(),
+            structures: Structure::ALL.into_iter().chain([bricks(8)]).collect(),
             isas: vec![Isa::detect()],
             threads: vec![1],
             exact: usize::MAX,
@@ -152,9 +152,9 @@ fn variants() -> Vec<Structure> {
     };
     let octree = |threshold, plane_weight| Structure::Octree(OctreeParams { threshold, plane_weight });
     let uniform = |density| Structure::Uniform(UniformParams { density });
-    let hybrid = |density, levels| {
+    let hybrid = |density| {
         let Structure::Hybrid(params) = Structure::HYBRID else { unreachable!("it is a hybrid") };
-        Structure::Hybrid(HybridParams { density, levels, ..params })
+        Structure::Hybrid(HybridParams { density, ..params })
     };
     vec![
         recursive(3, 2, true),
@@ -165,7 +165,14 @@ fn variants() -> Vec<Structure> {
         octree(4, 0),
         uniform(0.05),
         uniform(64.0),
-        hybrid(0.1, 0),
-        hybrid(8.0, 3),
+        hybrid(8.0),
+        bricks(8),
+        bricks(1),
     ]
+}
+
+/// A hybrid that divides wherever it may.
+fn bricks(levels: u32) -> Structure {
+    let params = HybridParams { density: 0.1, levels, group_cost: 1.0, brick_cost: 0.0, voxel_cost: 0.0 };
+    Structure::Hybrid(params)
 }

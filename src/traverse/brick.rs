@@ -9,11 +9,21 @@ use crate::lanes::{Lanes, WIDTH};
 /// When a path enters a brick's lower planes, and how long it takes to cross one voxel, by axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BrickPath {
-    pub(crate) enter: [f32; 3],
-    pub(crate) width: [f32; 3],
+    enter: [f32; 3],
+    width: [f32; 3],
+    /// More than the rounding errors of all times in the cell of the top grid, so that every voxel is
+    /// met at the times at which the path is in it. Smaller voxels inherit the errors, hence the slack.
+    slack: [f32; 3],
 }
 
 impl BrickPath {
+    /// For the brick that fills a cell of the top grid.
+    #[inline(always)]
+    pub(crate) fn new(enter: [f32; 3], width: [f32; 3]) -> Self {
+        let slack = |axis: usize| (enter[axis].abs() + 4.0 * width[axis]) * 2f32.powi(-20);
+        Self { enter, width, slack: [slack(0), slack(1), slack(2)] }
+    }
+
     /// The same for the brick that fills the voxel with this index (x + 4 y + 16 z, mirrored).
     #[inline(always)]
     pub(crate) fn child(&self, index: u32) -> Self {
@@ -21,21 +31,15 @@ impl BrickPath {
         Self {
             enter: std::array::from_fn(|axis| self.enter[axis] + at(axis) * self.width[axis]),
             width: self.width.map(|w| 0.25 * w),
+            slack: self.slack,
         }
     }
 
-    /// When the path enters the brick at the earliest, given the slack of [`BrickPath::slack`].
+    /// When the path enters the brick at the earliest, given the slack.
     #[inline(always)]
     pub(crate) fn earliest(&self) -> f32 {
-        let at = |axis: usize| self.enter[axis] - self.slack(axis);
+        let at = |axis: usize| self.enter[axis] - self.slack[axis];
         at(0).max(at(1)).max(at(2))
-    }
-
-    /// More than the rounding errors of the times of this brick's planes, its parent's and its
-    /// children's, so that the intervals of neighbours meet.
-    #[inline(always)]
-    fn slack(&self, axis: usize) -> f32 {
-        (self.enter[axis].abs() + 4.0 * self.width[axis]) * 2f32.powi(-21)
     }
 
     /// The voxels that the path meets from time 0 to `limit`.
@@ -46,7 +50,7 @@ impl BrickPath {
         const SLOW: [f32; WIDTH] = [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
         let (fast, slow) = (lanes.load(&FAST), lanes.load(&SLOW));
         let intervals = |axis: usize, index: L::F32| {
-            let (enter, width, slack) = (self.enter[axis], self.width[axis], self.slack(axis));
+            let (enter, width, slack) = (self.enter[axis], self.width[axis], self.slack[axis]);
             let start = lanes.splat(enter - slack) + index * lanes.splat(width);
             let end = lanes.splat(enter + width + slack) + index * lanes.splat(width);
             (lanes.max(start, lanes.splat(0.0)), lanes.min(end, lanes.splat(limit)))
@@ -127,10 +131,8 @@ mod tests {
     fn masks_are_those_of_single_voxels() {
         for i in 0..2000u32 {
             let value = |k: u32| (i.wrapping_mul(2_654_435_761).rotate_left(k * 5) >> 20) as f32 / 4096.0;
-            let path = BrickPath {
-                enter: [0, 1, 2].map(|k| 3.0 * value(k) - 2.0),
-                width: [3, 4, 5].map(|k| 1.0 / (value(k) + 1e-3)),
-            };
+            let enter = [0, 1, 2].map(|k| 3.0 * value(k) - 2.0);
+            let path = BrickPath::new(enter, [3, 4, 5].map(|k| 1.0 / (value(k) + 1e-3)));
             let limit = if i % 2 == 0 { f32::INFINITY } else { 2.0 * value(6) };
             assert_eq!(path.mask(Portable, limit), slow_mask(&path, limit), "{path:?} {limit}");
         }
@@ -138,7 +140,7 @@ mod tests {
 
     #[test]
     fn a_diagonal_meets_the_voxels_around_it() {
-        let path = BrickPath { enter: [0.0; 3], width: [1.0; 3] };
+        let path = BrickPath::new([0.0; 3], [1.0; 3]);
         let mask = path.mask(Portable, f32::INFINITY);
         for i in 0..4 {
             assert_ne!(mask & 1 << (21 * i), 0);
@@ -151,6 +153,37 @@ mod tests {
             for bit in 0..64 {
                 assert_eq!(mirror(1 << bit, octant), 1 << (bit ^ mirror_index(octant)));
             }
+        }
+    }
+    /// Notes the heights (y) of the voxels that a path meets three levels down, where all are occupied.
+    fn heights(path: &BrickPath, levels: u32, below: usize, met: &mut [bool; 64]) {
+        let mut mask = path.mask(Portable, f32::INFINITY);
+        while mask != 0 {
+            let index = mask.trailing_zeros();
+            mask &= mask - 1;
+            let height = 4 * below + (index as usize >> 2 & 3);
+            match levels {
+                1 => met[height] = true,
+                _ => heights(&path.child(index), levels - 1, height, met),
+            }
+        }
+    }
+
+    /// A path that climbs one cell while it crosses the plane between two bricks at a small angle.
+    #[test]
+    fn no_height_is_left_out_between_bricks() {
+        let mut rng = crate::rng::Rng::new(1);
+        for i in 0..10_000 {
+            let (crossing, width) = (rng.unit(), rng.range(1.0, 2.0) * 2f64.powi(i % 30));
+            let mut met = [false; 64];
+            for enter in [crossing - width, crossing] {
+                let path = |enter: f64| {
+                    let width = [width as f32, 1.0, 1e30].map(|w| 0.25 * w);
+                    BrickPath::new([enter as f32, 0.0, -1.0], width)
+                };
+                heights(&path(enter), 3, 0, &mut met);
+            }
+            assert_eq!(met, [true; 64], "{crossing} {width}");
         }
     }
 }

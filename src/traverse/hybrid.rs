@@ -37,10 +37,10 @@ pub(crate) fn walk<L: Lanes, V: Visit>(
             Voxel::Empty => {}
             Voxel::Leaf(first) => bricks.groups(first)?,
             Voxel::Node(brick) => {
-                let times = BrickPath {
-                    enter: std::array::from_fn(|axis| (dda.exit[axis] - path.width[axis]) as f32),
-                    width: path.width.map(|w| 0.25 * w as f32),
-                };
+                let times = BrickPath::new(
+                    std::array::from_fn(|axis| (dda.exit[axis] - path.width[axis]) as f32),
+                    path.width.map(|w| 0.25 * w as f32),
+                );
                 bricks.descend(brick, times)?;
             }
         }

@@ -31,15 +31,14 @@ pub(crate) fn cubic(bounds: &Aabb, target: f64) -> Grid {
             large = middle;
         }
     }
-    // A little wider, so that rounding keeps the far side inside.
-    centred(lo, extent, large * (1.0 + 1e-9), dims_of(large))
+    centred(lo, extent, widened(large, bounds), dims_of(large))
 }
 
 /// One cube around `bounds`.
 pub(crate) fn cube(bounds: &Aabb) -> Grid {
     let (lo, extent) = corner_and_extent(bounds);
     let longest = extent.into_iter().fold(0.0, f64::max);
-    let side = if longest == 0.0 { 1.0 } else { longest * (1.0 + 1e-9) };
+    let side = if longest == 0.0 { 1.0 } else { widened(longest, bounds) };
     centred(lo, extent, side, [1; 3])
 }
 
@@ -49,6 +48,14 @@ fn corner_and_extent(bounds: &Aabb) -> ([f64; 3], [f64; 3]) {
     }
     let lo = bounds.lo.as_dvec3().to_array();
     (lo, (bounds.hi.as_dvec3() - bounds.lo.as_dvec3()).to_array())
+}
+
+/// A little wider, so that in spite of rounding the scene lies inside by 2^-32 of the grid's width along
+/// each axis: a walk may leave the grid too early, but only by less. Far from the origin a few units in the
+/// last place of the coordinates are more.
+fn widened(cell: f64, bounds: &Aabb) -> f64 {
+    let farthest = f64::from(bounds.lo.abs().max(bounds.hi.abs()).max_element());
+    cell * (1.0 + (farthest / (1u64 << 50) as f64 / cell).max(1e-9))
 }
 
 /// The grid whose middle is the middle of the scene.
@@ -76,15 +83,41 @@ mod tests {
         assert_eq!(cubic(&bounds([1.0, 0.0, 0.0]), 1e9).dims, [1024, 1, 1]);
     }
 
+    /// Each side lies inside by more than 2^-32 of the grid's width; differences of close f64 are exact.
+    fn assert_covers(grid: &Grid, bounds: &Aabb) {
+        for axis in 0..3 {
+            let width = f64::from(grid.dims[axis]) * grid.cell;
+            let room = width / (1u64 << 32) as f64;
+            let below = f64::from(bounds.lo[axis]) - grid.lo[axis];
+            let above = width - (f64::from(bounds.hi[axis]) - grid.lo[axis]);
+            assert!(below > room && above > room, "{bounds:?} {grid:?}");
+        }
+    }
+
     #[test]
     fn the_grid_covers_the_scene() {
         for hi in [[4.0, 2.0, 1.0], [1e30, 1e-30, 3.0], [1e-40, 1e-41, 0.0]] {
             for target in [1.0, 100.0, 1e6] {
                 for grid in [cubic(&bounds(hi), target), cube(&bounds(hi))] {
-                    let far = grid.corner(grid.dims);
-                    for axis in 0..3 {
-                        assert!(grid.lo[axis] <= 0.0 && far[axis] >= f64::from(hi[axis]), "{hi:?} {grid:?}");
-                    }
+                    assert_covers(&grid, &bounds(hi));
+                }
+            }
+        }
+    }
+
+    /// A strip as wide as a few units in the last place of its coordinates, in cells as wide as itself.
+    #[test]
+    fn the_grid_covers_a_thin_scene_far_from_the_origin() {
+        for place in [1.0f32, 1.1, 1.5, -1.7] {
+            for units in 1..8 {
+                let hi = f32::from_bits(place.to_bits() + units);
+                let (lo, hi) = (Vec3::new(-0.5, place.min(hi), 0.0), Vec3::new(0.5, place.max(hi), 0.0));
+                let wide = f64::from(hi.y - lo.y);
+                for scale in [1.0, (1024.0 * wide) as f32] {
+                    let s = Vec3::new(scale, 1.0, 1.0);
+                    let bounds = Aabb { lo: lo * s, hi: hi * s };
+                    assert_covers(&cubic(&bounds, 1e5), &bounds);
+                    assert_covers(&cube(&bounds), &bounds);
                 }
             }
         }

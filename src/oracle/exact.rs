@@ -29,7 +29,7 @@ use crate::mesh::TriMesh;
 use crate::query::EdgeRule;
 use crate::ray::Ray;
 
-type Vector = [BigInt; 3];
+pub(super) type Vector = [BigInt; 3];
 
 /// Where the line of a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,7 +106,7 @@ fn moved_sign(dir: &Vector, (p, q): (&Vector, &Vector)) -> Sign {
 
 /// The points times 2^-scale, for the largest scale that makes all coordinates integers.
 fn integers<const N: usize>(points: [Vec3; N]) -> ([Vector; N], i64) {
-    let parts = points.map(|p| p.to_array().map(decompose));
+    let parts = points.map(|p| p.as_dvec3().to_array().map(decompose));
     let scale = parts.iter().flatten().filter(|part| part.0 != 0).map(|part| part.1).min().unwrap_or(0);
     let integer = |(mantissa, exponent): (i64, i64)| match mantissa {
         0 => BigInt::ZERO,
@@ -116,24 +116,24 @@ fn integers<const N: usize>(points: [Vec3; N]) -> ([Vector; N], i64) {
 }
 
 /// The odd (or zero) integer m and the exponent e with `x = m * 2^e`.
-fn decompose(x: f32) -> (i64, i64) {
+pub(super) fn decompose(x: f64) -> (i64, i64) {
     assert!(x.is_finite(), "{x} has no exact value");
-    let (field, fraction) = (i64::from(x.to_bits() >> 23 & 0xff), i64::from(x.to_bits() & 0x7f_ffff));
-    let magnitude = if field == 0 { fraction } else { fraction | 1 << 23 };
+    let (field, fraction) = (x.to_bits() >> 52 & 0x7ff, x.to_bits() & ((1 << 52) - 1));
+    let magnitude = if field == 0 { fraction } else { fraction | 1 << 52 };
     let zeros = if magnitude == 0 { 0 } else { magnitude.trailing_zeros() };
-    let odd = magnitude >> zeros;
-    (if x.is_sign_negative() { -odd } else { odd }, field.max(1) - 150 + i64::from(zeros))
+    let odd = (magnitude >> zeros) as i64;
+    (if x.is_sign_negative() { -odd } else { odd }, field.max(1) as i64 - 1075 + i64::from(zeros))
 }
 
-fn sub(a: &Vector, b: &Vector) -> Vector {
+pub(super) fn sub(a: &Vector, b: &Vector) -> Vector {
     std::array::from_fn(|i| &a[i] - &b[i])
 }
 
-fn dot(a: &Vector, b: &Vector) -> BigInt {
+pub(super) fn dot(a: &Vector, b: &Vector) -> BigInt {
     (0..3).map(|i| &a[i] * &b[i]).sum()
 }
 
-fn cross(a: &Vector, b: &Vector) -> Vector {
+pub(super) fn cross(a: &Vector, b: &Vector) -> Vector {
     std::array::from_fn(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         &a[j] * &b[k] - &a[k] * &b[j]
@@ -154,8 +154,8 @@ mod tests {
     #[test]
     fn decomposition_is_odd_and_exact() {
         assert_eq!(decompose(-6.0), (-3, 1));
-        assert_eq!(decompose(f32::from_bits(6)), (3, -148));
-        assert_eq!(decompose(f32::MAX), ((1 << 24) - 1, 104));
+        assert_eq!(decompose(f32::from_bits(6).into()), (3, -148));
+        assert_eq!(decompose(f32::MAX.into()), ((1 << 24) - 1, 104));
         assert_eq!(decompose(-0.0).0, 0);
     }
 

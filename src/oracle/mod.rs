@@ -11,9 +11,13 @@
 mod agree;
 pub mod brute;
 mod compare;
+#[cfg(test)]
+mod coverage;
 mod disagreement;
 pub mod exact;
 mod filter;
+#[cfg(test)]
+mod lattice;
 pub mod meshes;
 mod rational;
 pub mod rays;

@@ -1,0 +1,327 @@
+//! The inequalities of the error analysis (ARCHITECTURE.md), checked in exact arithmetic.
+//!
+//! - A triangle that meets a voxel enlarged by half the margin is listed there, and the box of its
+//!   cluster contains their common part, enlarged once more.
+//! - The voxels that a walk visits, enlarged by half the margin, hold every point of the ray in the scene.
+//!
+//! So every triangle lies, where a ray meets it, in a voxel that is visited.
+
+use std::ops::ControlFlow;
+
+use glam::Vec3;
+use num_bigint::BigInt;
+
+use super::lattice::{Lattice, overlap};
+use super::meshes::{Mesh, MeshKind, closed_mesh, random_mesh};
+use super::rays::hazards;
+use crate::aabb::Aabb;
+use crate::arena::{Arena, Form, Voxel, VoxelWord};
+use crate::build::{self, BuildOptions, HybridParams, RecursiveParams, Structure, UniformParams};
+use crate::dda::{BRICK_MARGIN, LIST_MARGIN};
+use crate::descent::Walk;
+use crate::lanes::{Isa, WIDTH, dispatch};
+use crate::mesh::TriMesh;
+use crate::ray::Ray;
+use crate::rng::Rng;
+use crate::traverse::{self, Visit};
+use crate::validate::validate;
+
+/// Which datum of the arena a walk reads when it visits a voxel.
+#[derive(Clone, Copy)]
+enum Slot {
+    Word(usize),
+    /// An empty voxel of that brick.
+    Brick(usize),
+}
+
+/// An undivided voxel, in parts of the top grid's cells.
+struct Leaf {
+    lo: [u64; 3],
+    side: u64,
+    slot: Slot,
+    clusters: Vec<u32>,
+    /// The boxes of the clusters, in cells; none in lists.
+    boxes: Vec<[[f32; 3]; 2]>,
+}
+
+/// A structure, its leaves and where they are.
+struct Subject {
+    arena: Arena,
+    parts: u64,
+    leaves: Vec<Leaf>,
+    /// Half the margin that voxels are built with.
+    margin: f64,
+    bounds: Aabb,
+}
+
+impl Subject {
+    fn new(mesh: &TriMesh<'_>, structure: Structure) -> Self {
+        let arena = build::build(mesh, &BuildOptions { structure, ..Default::default() }).unwrap();
+        let depth = validate(&arena, mesh.len()).unwrap().depth as u32;
+        let parts = u64::from(arena.form.divisions()).pow(depth);
+        let margin = if arena.form == Form::Bricks { BRICK_MARGIN } else { LIST_MARGIN };
+        let margin = 0.5 * margin * arena.grid.cell * f64::from(arena.grid.longest());
+        let clusters = arena.clusters.iter();
+        let bounds = clusters.fold(Aabb::EMPTY, |all, c| all.union(c.bounds(c.occupied())));
+        let mut subject = Self { arena, parts, leaves: Vec::new(), margin, bounds };
+        let dims = subject.arena.grid.dims.map(|n| n as usize);
+        for i in 0..subject.arena.grid.len() {
+            let at = [i % dims[0], i / dims[0] % dims[1], i / dims[0] / dims[1]];
+            subject.voxel(Slot::Word(i), at.map(|x| x as u64 * parts), parts);
+        }
+        subject
+    }
+
+    fn voxel(&mut self, slot: Slot, lo: [u64; 3], side: u64) {
+        let word = match slot {
+            Slot::Word(word) => self.arena.words[word],
+            Slot::Brick(_) => VoxelWord::EMPTY,
+        };
+        let mut leaf = Leaf { lo, side, slot, clusters: Vec::new(), boxes: Vec::new() };
+        match word.get() {
+            Voxel::Node(first) => return self.parts(first as usize, lo, side),
+            Voxel::Leaf(first) => self.list(first as usize, &mut leaf),
+            Voxel::Empty => {}
+        }
+        self.leaves.push(leaf);
+    }
+
+    fn parts(&mut self, first: usize, lo: [u64; 3], side: u64) {
+        let n = self.arena.form.divisions() as usize;
+        let mut next = 0;
+        for i in 0..n * n * n {
+            let slot = match self.arena.form {
+                Form::Lists { .. } => Slot::Word(first + i),
+                Form::Bricks if self.arena.bricks[first].occupied >> i & 1 == 0 => Slot::Brick(first),
+                Form::Bricks => {
+                    next += 1;
+                    Slot::Word(self.arena.bricks[first].first as usize + next - 1)
+                }
+            };
+            let (at, side) = ([i % n, i / n % n, i / n / n], side / n as u64);
+            self.voxel(slot, std::array::from_fn(|axis| lo[axis] + at[axis] as u64 * side), side);
+        }
+    }
+
+    fn list(&self, first: usize, leaf: &mut Leaf) {
+        if self.arena.form != Form::Bricks {
+            let list = &self.arena.references[first..];
+            let last = list.iter().position(|reference| reference.is_last()).unwrap();
+            leaf.clusters = list[..=last].iter().map(|reference| reference.cluster()).collect();
+            return;
+        }
+        let groups = &self.arena.groups[first..];
+        let last = groups.iter().position(|group| group.clusters[0].is_last()).unwrap();
+        for group in &groups[..=last] {
+            for lane in (0..WIDTH).filter(|&lane| group.planes[0][0][lane] != f32::INFINITY) {
+                leaf.clusters.push(group.clusters[lane].cluster());
+                leaf.boxes.push(group.planes.map(|side| side.map(|axis| axis[lane])));
+            }
+        }
+    }
+
+    fn lattice(&self, mesh: &TriMesh<'_>, rays: &[Ray]) -> Lattice {
+        let vertices = mesh.vertices().iter().map(|&v| Vec3::from_array(v));
+        let points = vertices.chain(rays.iter().map(|ray| ray.origin));
+        let values = points.flat_map(|p| p.as_dvec3().to_array()).chain([self.margin]);
+        Lattice::new(&self.arena.grid, self.parts, values)
+    }
+
+    /// False only where a leaf is certainly far from a box.
+    fn are_near(&self, leaf: &Leaf, bounds: &Aabb) -> bool {
+        let grid = &self.arena.grid;
+        (0..3).all(|axis| {
+            let plane = |i: u64| grid.lo[axis] + i as f64 / self.parts as f64 * grid.cell;
+            let [lo, hi] = [bounds.lo[axis], bounds.hi[axis]].map(f64::from);
+            let slack = 2.0 * self.margin + 1e-9 * (lo.abs() + hi.abs());
+            plane(leaf.lo[axis]) - slack <= hi && lo <= plane(leaf.lo[axis] + leaf.side) + slack
+        })
+    }
+
+    /// The first inequality.
+    fn assert_voxels_list_what_they_meet(&self, mesh: &TriMesh<'_>) {
+        let lattice = self.lattice(mesh, &[]);
+        let margin = lattice.length(self.margin);
+        let clusters = (0..).zip(&self.arena.clusters);
+        let lanes =
+            clusters.flat_map(|(i, c)| (0..WIDTH).map(move |lane| (i, c.ids()[lane], c.triangle(lane))));
+        let lanes = lanes.filter(|(_, id, _)| *id != u32::MAX);
+        let triangles: Vec<_> =
+            lanes.map(|(i, id, t)| (i, id, Aabb::around(t), t.map(|v| lattice.point(v)))).collect();
+        for leaf in &self.leaves {
+            let voxel = lattice.voxel(leaf.lo, leaf.side, &margin);
+            for (cluster, id, bounds, corners) in &triangles {
+                if !self.are_near(leaf, bounds) || !overlap(corners, &voxel) {
+                    continue;
+                }
+                let place = leaf.clusters.iter().position(|c| c == cluster);
+                let place = place.unwrap_or_else(|| panic!("triangle {id} is not listed at {:?}", leaf.lo));
+                let Some(bounds) = leaf.boxes.get(place) else { continue };
+                for axis in 0..3 {
+                    let of = corners.each_ref().map(|corner| &corner[axis]);
+                    let lo = of.into_iter().min().unwrap().max(&voxel[0][axis]) - &margin;
+                    let hi = of.into_iter().max().unwrap().min(&voxel[1][axis]) + &margin;
+                    let [below, above] = bounds.map(|side| lattice.cells(side[axis]));
+                    assert!(below <= lo && hi <= above, "the box of triangle {id} at {:?}", leaf.lo);
+                }
+            }
+        }
+    }
+
+    /// The second inequality.
+    fn assert_walks_cover(&self, mesh: &TriMesh<'_>, rays: &[Ray]) {
+        let lattice = self.lattice(mesh, rays);
+        let margin = lattice.length(self.margin);
+        let bounds = [self.bounds.lo, self.bounds.hi].map(|p| lattice.point(p));
+        for ray in rays {
+            let line = lattice.line(ray);
+            let Some([start, end]) = line.times(&bounds).filter(|[_, end]| *end >= BigInt::ZERO) else {
+                continue;
+            };
+            for walk in [Walk::Special, Walk::General] {
+                let mut visited = Visited::new(&self.arena);
+                dispatch!(Isa::detect(), lanes => traverse::visit(lanes, &self.arena, walk, ray, &mut visited));
+                if visited.all {
+                    continue;
+                }
+                let leaves = self.leaves.iter().filter(|leaf| visited.has(leaf.slot));
+                let times = |leaf: &Leaf| line.times(&lattice.voxel(leaf.lo, leaf.side, &margin));
+                let mut intervals: Vec<_> = leaves.filter_map(times).collect();
+                intervals.sort();
+                let mut reached = start.clone().max(BigInt::ZERO);
+                for [from, to] in intervals {
+                    if from <= reached {
+                        reached = reached.max(to);
+                    }
+                }
+                assert!(reached >= end, "{ray:?} is lost on its way through {:?}", self.arena.grid);
+            }
+        }
+    }
+
+    /// Rays that cross a plane between voxels at a corner or anywhere, from steeply to almost in it.
+    fn grazing(&self, rng: &mut Rng, n: usize) -> Vec<Ray> {
+        let grid = &self.arena.grid;
+        let size = grid.cell * f64::from(grid.longest());
+        let mut ray = || {
+            let leaf = &self.leaves[rng.below(self.leaves.len())];
+            let steepest = rng.below(3);
+            let [mut target, mut dir] = [[0.0; 3]; 2];
+            for axis in 0..3 {
+                let inside = if rng.below(4) == 0 { rng.unit() } else { 0.0 };
+                let place = (leaf.lo[axis] as f64 + inside * leaf.side as f64) / self.parts as f64;
+                target[axis] = grid.lo[axis] + place * grid.cell;
+                dir[axis] = rng.signed() * size;
+                if axis != steepest {
+                    dir[axis] *= 0.5f64.powi(rng.below(50) as i32);
+                }
+            }
+            let back = rng.range(0.0, 1.0) * rng.pick(&[1.0, 1.0, 1e9, 1e18]);
+            let vec3 = |v: [f64; 3]| Vec3::from_array(v.map(|x| x as f32));
+            Ray::new(vec3(std::array::from_fn(|axis| target[axis] - back * dir[axis])), vec3(dir))
+        };
+        (0..n).map(|_| ray()).collect()
+    }
+}
+
+/// Notes the voxels that a walk visits, by what it reads.
+struct Visited<'a> {
+    arena: &'a Arena,
+    words: Vec<bool>,
+    bricks: Vec<bool>,
+    /// Whether clusters came without voxels, for a ray that no walk can follow.
+    all: bool,
+}
+
+impl<'a> Visited<'a> {
+    fn new(arena: &'a Arena) -> Self {
+        let (words, bricks) = (vec![false; arena.words.len()], vec![false; arena.bricks.len()]);
+        Self { arena, words, bricks, all: false }
+    }
+
+    fn has(&self, slot: Slot) -> bool {
+        match slot {
+            Slot::Word(word) => self.words[word],
+            Slot::Brick(brick) => self.bricks[brick],
+        }
+    }
+}
+
+impl Visit for Visited<'_> {
+    fn read<T>(&mut self, data: &T) {
+        fn index<T, U>(data: &T, of: &[U]) -> Option<usize> {
+            let offset = std::ptr::from_ref(data).addr().checked_sub(of.as_ptr().addr())?;
+            Some(offset / size_of::<U>()).filter(|&i| i < of.len())
+        }
+        if let Some(word) = index(data, &self.arena.words) {
+            self.words[word] = true;
+        }
+        if let Some(brick) = index(data, &self.arena.bricks) {
+            self.bricks[brick] = true;
+        }
+    }
+
+    fn cluster(&mut self, _: u32) -> ControlFlow<()> {
+        self.all |= !self.words.contains(&true);
+        ControlFlow::Continue(())
+    }
+
+    fn limit(&self) -> f64 {
+        f64::INFINITY
+    }
+}
+
+fn structures() -> Vec<Structure> {
+    let recursive = Structure::Recursive(RecursiveParams { threshold: 3, divisions: 3, top_grid: true });
+    let deep = HybridParams { density: 0.01, levels: 8, group_cost: 1.0, brick_cost: 0.0, voxel_cost: 0.0 };
+    let more = [recursive, Structure::Uniform(UniformParams { density: 64.0 }), Structure::Hybrid(deep)];
+    Structure::ALL.into_iter().chain(more).collect()
+}
+
+fn scenes() -> impl Iterator<Item = Mesh> {
+    let kinds = MeshKind::ALL.into_iter();
+    let random = kinds.flat_map(|kind| (0..2).map(move |seed| random_mesh(seed, kind)));
+    random.chain([strip(), closed_mesh(1, 4), closed_mesh(2, 5)])
+}
+
+/// Rays from near and far that touch the bottom of the strip at its middle and sink no further.
+fn to_the_middle_of_the_strip() -> impl Iterator<Item = Ray> {
+    let power = |exponent: i32| 2f32.powi(exponent);
+    let distances = [0, 10, 20, 30, 38, 40, 45].into_iter();
+    distances.map(move |far| Ray::new([-power(far), 1.5 + power(-23), 0.0], [1.0, -power(-23 - far), 0.0]))
+}
+
+/// A strip that is as wide as one unit in the last place of its y, 1024 times as long, and touches the
+/// bottom at its middle.
+fn strip() -> Mesh {
+    let unit = 0.5f32.powi(23);
+    let vertex = |i: u32| [(8 * (i / 2)) as f32 - 512.0, (i % 2) as f32, (i % 4) as f32 / 4.0];
+    let vertices = (0..258).map(vertex).map(|[x, y, z]| [x * unit, 1.5 + y * unit, z * unit]);
+    (vertices.collect(), (0..256).map(|i| [i, i + 1, i + 2]).collect())
+}
+
+#[test]
+fn voxels_list_what_they_meet() {
+    for (vertices, triangles) in scenes().take(14) {
+        let mesh = TriMesh::new(&vertices, &triangles).unwrap();
+        for structure in structures() {
+            Subject::new(&mesh, structure).assert_voxels_list_what_they_meet(&mesh);
+        }
+    }
+}
+
+#[test]
+fn walks_cover_their_rays() {
+    for (seed, (vertices, triangles)) in (0..).zip(scenes()) {
+        let mesh = TriMesh::new(&vertices, &triangles).unwrap();
+        for structure in structures() {
+            let subject = Subject::new(&mesh, structure);
+            let mut rays = hazards(&mesh, seed, 100);
+            rays.extend(subject.grazing(&mut Rng::new(seed), 200));
+            rays.extend(to_the_middle_of_the_strip());
+            rays.retain(Ray::is_valid);
+            rays.iter_mut().for_each(|ray| *ray = ray.with_interval(0.0, f32::INFINITY));
+            subject.assert_walks_cover(&mesh, &rays);
+        }
+    }
+}

@@ -8,10 +8,11 @@
 //! the top grid; times count from the [`Path`]'s start, at a speed of one cell along the steepest axis.
 //!
 //! # Errors
-//! With S the size of the grid in cells, the start is off by 2^-38 S at most, the time of a plane by 2^-51 of
-//! itself, and each step of `exit` by 2^-53; after 1024 steps a plane is misplaced by less than 2^-42 S.
-//! A component of the direction below 2^-60 of the largest is raised to that, which moves the ray by
-//! less than 2^-58 S within the grid. Voxels are built larger than that, see [`LIST_MARGIN`].
+//! With S the size of the grid in cells, the start is off by 2^-38 S at most, and each step of `exit` by
+//! 2^-53 of itself: after 2^10 steps through the top grid a plane is misplaced by less than 2^-42 S, after
+//! the 2^22 steps through the smallest voxels of a list structure by less than 2^-30.9 S. A component of
+//! the direction below 2^-60 of the largest is raised to that, which moves the ray by less than 2^-47 S.
+//! Voxels are built larger than that, see [`LIST_MARGIN`] and "Error analysis" in ARCHITECTURE.md.
 
 use crate::arena::Grid;
 use crate::descent::first_exit;
@@ -19,7 +20,7 @@ use crate::exact::{midpoint, two_product, two_sum};
 use crate::ray::Ray;
 
 /// The margin of the voxels of a structure that is walked in f64, relative to the size of the scene.
-pub(crate) const LIST_MARGIN: f64 = 1.0 / (1u64 << 36) as f64;
+pub(crate) const LIST_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// The margin of the voxels and boxes of a structure of bricks, whose times are f32.
 pub(crate) const BRICK_MARGIN: f64 = 1.0 / (1u64 << 19) as f64;
@@ -46,7 +47,7 @@ pub(crate) enum Clip {
     Miss,
     /// Along this path, if at all.
     Path(Path),
-    /// Its origin is so far away (more than about 2^64 sizes of the grid) that f64 can't place it.
+    /// Its origin is so far away (more than about 2^63 sizes of the grid) that f64 can't place it.
     TooFar,
 }
 
@@ -54,7 +55,8 @@ impl Path {
     /// Clips a valid ray to the grid.
     #[inline]
     pub(crate) fn clip(ray: &Ray, grid: &Grid) -> Clip {
-        // Bounds the error of a quotient of differences.
+        // Bounds the error of a quotient of differences, but for 2^-52 of the grid's width, by which the scene
+        // is certainly inside.
         const SLACK: f64 = 1.0 / (1u64 << 51) as f64;
         let (mut enter, mut leave) = (f64::from(ray.t_min), rounds_to(ray.t_max));
         for axis in 0..3 {
@@ -77,8 +79,8 @@ impl Path {
 
     #[inline]
     fn from(ray: &Ray, grid: &Grid, start: f64) -> Clip {
-        /// Places in units of the grid's size up to which their rounding stays below the margin.
-        const FAR: f64 = 16384.0;
+        /// Places in units S of the grid's size up to which their errors stay below 2^-38 S.
+        const FAR: f64 = 4096.0;
         let octant = ray.octant();
         let steepest = f64::from(ray.dir.abs().max_element());
         let least = steepest / (1u64 << 60) as f64;
@@ -119,8 +121,8 @@ pub(crate) fn rounds_to(t: f32) -> f64 {
     midpoint(t, t.next_up())
 }
 
-/// origin - lo + t * dir along one axis, to 2^-52 of the result: in two terms, since for an origin far
-/// away the sum cancels.
+/// origin - lo + t * dir along one axis, to 2^-53 of the result and 2^-105 of the origin's distance: in two
+/// terms, since for an origin far away the sum cancels.
 #[inline]
 fn advance(ray: &Ray, axis: usize, t: f64, lo: f64) -> f64 {
     let (position, position_error) = two_sum(f64::from(ray.origin[axis]), -lo);
@@ -187,6 +189,8 @@ pub(crate) fn signed_strides(strides: [u32; 3], octant: u32) -> [i32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arena::LIST_LEVELS;
+    use crate::descent::General;
 
     /// The voxels that a path through a grid of 1 x 1 x 1 cells visits.
     fn visited(ray: Ray, dims: [u32; 3]) -> Vec<[u32; 3]> {
@@ -221,6 +225,23 @@ mod tests {
         assert!(visited(Ray::new([-1.0, 3.5, 0.5], [1.0, 0.0, 0.0]), [4, 3, 1]).is_empty());
         let behind = Ray::new([5.0, 1.5, 0.5], [1.0, 0.0, 0.0]);
         assert!(visited(behind, [4, 3, 1]).is_empty());
+    }
+
+    /// The finest voxels of an octree, one after the other through the whole grid.
+    #[test]
+    fn planes_keep_their_place_over_all_steps() {
+        for width in [1.0, 1.1, 1.3, 1.7, 1e6 / 3.0] {
+            let mut part = General::<2>::whole([width; 3], [width; 3]);
+            for _ in 0..LIST_LEVELS {
+                part = part.descend(0.0, 0b111);
+            }
+            let step = part.width[0];
+            for i in 1..=1u32 << LIST_LEVELS {
+                let error = (part.exit[0] - f64::from(i) * step).abs() / width;
+                assert!(error < 0.5 * LIST_MARGIN, "after {i} steps of {step}");
+                part.step(0, 0b111);
+            }
+        }
     }
 
     #[test]

@@ -167,7 +167,7 @@ impl<L: Lanes> RayLanes<L> {
         Self {
             origin: ray.origin.to_array().map(|x| lanes.splat(x)),
             dir: scale.direction(ray.dir).to_array().map(|x| lanes.splat(x)),
-            t_min: lanes.splat(scale.time(ray.t_min)),
+            t_min: lanes.splat(scale.time_below(ray.t_min)),
             t_max: lanes.splat(scale.time(ray.t_max)),
         }
     }
@@ -183,7 +183,7 @@ impl<L: Lanes> RayLanes<L> {
         Self {
             origin: std::array::from_fn(|axis| load(&|i| rays[i].origin[axis])),
             dir: std::array::from_fn(|axis| load(&|i| scales[i].direction(rays[i].dir)[axis])),
-            t_min: load(&|i| scales[i].time(rays[i].t_min)),
+            t_min: load(&|i| scales[i].time_below(rays[i].t_min)),
             t_max: load(&|i| scales[i].time(rays[i].t_max)),
         }
     }
@@ -230,11 +230,19 @@ impl Scale {
         (dir.as_dvec3() * self.factor).as_vec3()
     }
 
-    /// t in units of the scaled direction; what is too large stays finite, as it was.
+    /// t in units of the scaled direction, rounded up; what is too large stays finite, as it was.
     #[inline(always)]
     pub(crate) fn time(self, t: f32) -> f32 {
-        let scaled = (f64::from(t) / self.factor) as f32;
+        let exact = f64::from(t) / self.factor;
+        let rounded = exact as f32;
+        let scaled = if f64::from(rounded) < exact { rounded.next_up() } else { rounded };
         if t.is_finite() { scaled.clamp(f32::MIN, f32::MAX) } else { t }
+    }
+
+    /// The same, rounded down.
+    #[inline(always)]
+    fn time_below(self, t: f32) -> f32 {
+        -self.time(-t)
     }
 
     /// The inverse of [`Scale::time`].
@@ -426,6 +434,25 @@ mod tests {
         assert!(misses_nothing(Portable, 1) > 500);
         for (isa, seed) in Isa::available().into_iter().zip(2..) {
             dispatch!(isa, lanes => misses_nothing(lanes, seed));
+        }
+    }
+    /// At a distance of one unit of the least f32 from a corner of a large triangle, with the end of the
+    /// interval at the hit: scaled like the direction, it falls between two f32.
+    #[test]
+    fn candidates_hold_hits_at_the_least_distances() {
+        let [a, b, c] = corners(UNIT).map(|v| v * 2f32.powi(60));
+        for (numerator, back) in (1..400).flat_map(|i| [(i as f32, 0.0), (i as f32, 1.0)]) {
+            let dir = Vec3::new(0.0, 0.0, -numerator * 2f32.powi(-40));
+            let ray = Ray::new([0.0, 0.0, f32::from_bits(1) * (1.0 - 2.0 * back)], dir);
+            let at = intersect(&ray, [a, b, c], EdgeRule::Closed).unwrap();
+            let ray = if at.t > 0.0 {
+                ray.with_interval(0.0, at.t)
+            } else {
+                ray.with_interval(at.t.next_down(), 0.0)
+            };
+            let splat = [a, b, c].map(|v| v.to_array().map(|x| Portable.splat(x)));
+            let lanes = RayLanes::splat(Portable, &ray, Scale::of(ray.dir));
+            assert_eq!(candidates(Portable, &lanes, splat), 0xff, "{ray:?}");
         }
     }
 }

@@ -11,8 +11,8 @@ use crate::query::{All, Any, Closest, Counting};
 use crate::ray::Ray;
 use crate::scene::{AllHits, Scene};
 
-/// Compares brute force with exact arithmetic: t and triangles bit for bit, u and v to within one
-/// unit in the last place plus 2^-24.
+/// Compares brute force with exact arithmetic: t and triangles bit for bit, u and v (both rounded) to
+/// within one unit in the last place plus 2^-27.
 pub(super) fn with_exact(
     mesh: &TriMesh<'_>,
     ray: &Ray,
@@ -30,7 +30,7 @@ pub(super) fn with_exact(
 fn close((a, b): (&Hit, &Hit)) -> bool {
     let within = |x: f32, y: f32| {
         let unit = f64::from(y.abs().next_up()) - f64::from(y.abs());
-        (f64::from(x) - f64::from(y)).abs() <= unit + 0.5f64.powi(24)
+        (f64::from(x) - f64::from(y)).abs() <= unit + 0.5f64.powi(27)
     };
     a.prim == b.prim && a.t.to_bits() == b.t.to_bits() && within(a.u, b.u) && within(a.v, b.v)
 }

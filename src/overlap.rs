@@ -10,10 +10,10 @@ use crate::triangle::{Vec3Lanes, cross, dot, minus, unfused};
 
 /// The lanes whose triangle may overlap `bounds`, as bits.
 ///
-/// With A the largest absolute coordinate relative to the middle of the box and E that of an edge,
-/// the errors stay below 2^-20 A (box axes), 2^-20 A E (cross products) and 2^-18 A E E (normal):
-/// those of the inputs are 2^-24 A and 2^-24 E. Where something overflows, so does its bound, and
-/// infinite and NaN bounds exclude nothing.
+/// With A the largest absolute coordinate relative to the middle of the box, E that of an edge and
+/// e = 2^-24, the errors stay below e A (box axes), 7 e A E (cross products) and 99 e A E E (normal); the
+/// bounds are 16, 16 and 256 times. That edges and normals are rounded only turns the axes, of which any
+/// may separate. Where something overflows, so does its bound, and infinite and NaN bounds exclude nothing.
 #[inline(always)]
 pub(crate) fn overlapping<L: Lanes>(lanes: L, corners: [Vec3Lanes<L>; 3], bounds: &Aabb) -> u32 {
     let middle = bounds.center();

@@ -5,9 +5,10 @@
 //! meets, ANDed with that of the occupied ones, is popped from its lowest bit, which is the next voxel.
 //!
 //! # Errors
-//! Times within bricks are f32. A plane lies at most 2^10 cells from the start, so the roundings of the
-//! start, the plane, their difference and its product with `width` misplace it by less than 2^-20 of
-//! the grid; voxels and boxes are built larger by twice that, see
+//! Times within bricks are f32. The slack of [`BrickPath`] makes up for their rounding, so that a voxel is
+//! visited at all times at which the path is in it. A side of a box lies at most 2^10 cells from the start:
+//! the roundings of the start, of the difference and of its product with `slope` misplace it by less than
+//! 2^-22 of the grid; voxels and boxes are built larger by 8 times that, see
 //! [`BRICK_MARGIN`](crate::dda::BRICK_MARGIN).
 
 use std::ops::ControlFlow;

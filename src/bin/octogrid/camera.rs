@@ -3,7 +3,9 @@
 use std::str::FromStr;
 
 use glam::DVec3;
-use octogrid::Ray;
+use octogrid::{Ray, builtin};
+
+use crate::streams::generator;
 
 /// Where one stands and looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,6 +14,13 @@ pub(crate) struct Viewpoint {
     pub(crate) target: DVec3,
     /// Vertical field of view.
     pub(crate) fov_degrees: f64,
+}
+
+impl From<&builtin::Camera> for Viewpoint {
+    fn from(camera: &builtin::Camera) -> Self {
+        let [eye, target] = [camera.eye, camera.target].map(|p| DVec3::from_array(p.map(f64::from)));
+        Self { eye, target, fov_degrees: camera.vertical_fov_degrees.into() }
+    }
 }
 
 /// The value of `--camera`.
@@ -65,6 +74,8 @@ pub(crate) struct Pinhole {
     right: DVec3,
     up: DVec3,
     size: [u32; 2],
+    /// Where rays don't go through the centres of pixels: what chooses the points.
+    jitter: Option<u64>,
 }
 
 impl Pinhole {
@@ -76,7 +87,19 @@ impl Pinhole {
         let right = if side.length() > 1e-6 { side.normalize() } else { forward.any_orthonormal_vector() };
         let height = (view.fov_degrees.to_radians() / 2.0).tan();
         let width = height * f64::from(size[0]) / f64::from(size[1]);
-        Self { eye: view.eye, forward, right: right * width, up: right.cross(forward) * height, size }
+        Self {
+            eye: view.eye,
+            forward,
+            right: right * width,
+            up: right.cross(forward) * height,
+            size,
+            jitter: None,
+        }
+    }
+
+    /// The same camera with its rays through random points of the pixels.
+    pub(crate) fn jittered(self, seed: u64) -> Self {
+        Self { jitter: Some(seed), ..self }
     }
 
     /// The number of pixels.
@@ -84,11 +107,16 @@ impl Pinhole {
         self.size[0] as usize * self.size[1] as usize
     }
 
-    /// The ray through the centre of a pixel, counted from the upper left; its direction has length 1.
+    /// The ray through a pixel, counted from the upper left; its direction has length 1.
     pub(crate) fn ray(&self, pixel: usize) -> Ray {
         let width = self.size[0] as usize;
-        let along = |at: usize, size: u32| (2.0 * at as f64 + 1.0) / f64::from(size) - 1.0;
-        let (x, y) = (along(pixel % width, self.size[0]), along(pixel / width, self.size[1]));
+        let within = self.jitter.map_or([0.5; 2], |seed| {
+            let rng = &mut generator(seed, pixel as u64);
+            [(); 2].map(|()| rng.unit())
+        });
+        let at = [pixel % width, pixel / width];
+        let along = |axis: usize| 2.0 * (at[axis] as f64 + within[axis]) / f64::from(self.size[axis]) - 1.0;
+        let (x, y) = (along(0), along(1));
         let dir = (self.forward + x * self.right - y * self.up).normalize();
         Ray::new(self.eye.as_vec3(), dir.as_vec3())
     }
@@ -121,5 +149,15 @@ mod tests {
         let close = |a: [f32; 3], b: [f32; 3]| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-6);
         assert!(close(at_depth_1(0), [-1.5, 0.5, -1.0]));
         assert!(close(at_depth_1(7), [1.5, -0.5, -1.0]));
+    }
+
+    #[test]
+    fn jitter_stays_within_the_pixel() {
+        let view = Viewpoint { eye: DVec3::ZERO, target: DVec3::NEG_Z, fov_degrees: 90.0 };
+        let camera = Pinhole::new(&view, DVec3::Y, [4, 2]);
+        let dirs: Vec<_> = (0..1000).map(|seed| camera.jittered(seed).ray(0).dir).collect();
+        let mean = dirs.iter().map(|dir| dir / -dir.z).sum::<glam::Vec3>() / 1000.0;
+        assert!((mean.x + 1.5).abs() < 0.05 && (mean.y - 0.5).abs() < 0.05, "{mean}");
+        assert!(dirs.iter().map(|dir| dir / -dir.z).all(|d| d.x <= -1.0 && d.y >= 0.0));
     }
 }

@@ -21,6 +21,7 @@ mod render;
 mod report;
 mod scene;
 mod shade;
+mod streams;
 mod survey;
 mod table;
 mod tone;

@@ -8,7 +8,7 @@ use image::{ImageFormat, RgbImage};
 use octogrid::Scene;
 
 use crate::args::{BuildArgs, Choice};
-use crate::camera::{CameraArg, Pinhole, Viewpoint};
+use crate::camera::{CameraArg, Pinhole};
 use crate::failure::Failure;
 use crate::frame::{self, Rate, Rates};
 use crate::integrators::{Integrator, Settings};
@@ -120,11 +120,7 @@ fn camera(args: &Args, loaded: &Loaded, scene: &Scene) -> Result<Pinhole, Failur
         None => None,
     };
     let view = match (loaded.cameras.get(number.unwrap_or(0)), number) {
-        (Some(camera), _) => Viewpoint {
-            eye: DVec3::from_array(camera.eye.map(f64::from)),
-            target: DVec3::from_array(camera.target.map(f64::from)),
-            fov_degrees: camera.vertical_fov_degrees.into(),
-        },
+        (Some(camera), _) => camera.into(),
         (None, Some(number)) => {
             let (name, count) = (&loaded.name, loaded.cameras.len());
             return Err(Failure::Usage(format!("no camera {number}: {name} has {count}, counted from 0")));

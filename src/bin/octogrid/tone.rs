@@ -14,7 +14,7 @@ const MIDDLE: f32 = 0.4;
 const WHITE: f32 = 4.0;
 
 /// Weights of red, green and blue in luminance.
-const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
+pub(crate) const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
 /// Exposes for the image's log-average luminance.
 pub(crate) fn expose(samples: &[Sample], ambient: bool) -> Vec<[u8; 3]> {
@@ -32,6 +32,11 @@ pub(crate) fn expose(samples: &[Sample], ambient: bool) -> Vec<[u8; 3]> {
             to_bytes(colour.lerp(Vec3::splat(BACKGROUND), s.background.clamp(0.0, 1.0)))
         })
         .collect()
+}
+
+/// The luminance that becomes pure white in an image of such luminances.
+pub(crate) fn white(luminances: impl Iterator<Item = f32>) -> f32 {
+    WHITE * log_average(luminances) / MIDDLE
 }
 
 /// Bytes of a colour in [0, 1].

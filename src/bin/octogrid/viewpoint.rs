@@ -3,11 +3,21 @@
 use glam::DVec3;
 use octogrid::{Hit, Model, Ray, Scene};
 
-use crate::camera::Viewpoint;
+use crate::camera::{Pinhole, Viewpoint};
+use crate::load::Loaded;
 use crate::survey::{self, bounds};
 
 /// Rays that probe a place.
 const PROBES: usize = 200;
+
+/// The first built-in camera, else a sensible one, y pointing up.
+pub(crate) fn camera(loaded: &Loaded, scene: &Scene, size: [u32; 2]) -> Pinhole {
+    let view = match loaded.cameras.first() {
+        Some(camera) => camera.into(),
+        None => automatic(&loaded.model, scene, 1),
+    };
+    Pinhole::new(&view, DVec3::Y, size)
+}
 
 /// A viewpoint for the scene, `up` being the index of the vertical axis.
 pub(crate) fn automatic(model: &Model, scene: &Scene, up: usize) -> Viewpoint {

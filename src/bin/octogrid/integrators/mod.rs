@@ -14,6 +14,8 @@ mod path;
 mod photon;
 mod walk;
 
+use std::fmt;
+
 use clap::ValueEnum;
 use glam::Vec3;
 use octogrid::Scene;
@@ -29,6 +31,9 @@ use photon::PhotonMap;
 
 /// Rays in flight at once, to keep memory and progress steady.
 const BAND: usize = 1 << 18;
+
+/// The most reflections between light and eye unless another number is asked for.
+pub(crate) const BOUNCES: u32 = 5;
 
 /// Finds the light that surfaces receive, over pi.
 type Light<'a> = &'a mut dyn FnMut(&[Surface], &mut Rates) -> Vec<Vec3>;
@@ -46,7 +51,7 @@ pub(crate) struct Settings {
     #[arg(long, value_name = "S", default_value = "0")]
     pub(crate) seed: u64,
     /// The most reflections between light and eye in path and photon
-    #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(long, value_name = "N", default_value_t = BOUNCES, value_parser = clap::value_parser!(u32).range(1..=64))]
     pub(crate) bounces: u32,
 }
 
@@ -59,6 +64,13 @@ pub(crate) enum Integrator {
     Path,
     /// Random particles from the lights, counted where they land
     Photon,
+}
+
+impl fmt::Display for Integrator {
+    /// As on the command line.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.to_possible_value().map_or(Ok(()), |value| f.write_str(value.get_name()))
+    }
 }
 
 /// The samples of all pixels of an image.

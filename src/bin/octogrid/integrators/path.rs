@@ -25,6 +25,7 @@ use super::emitters::Emitters;
 use super::walk::{self, Flight, Vertex};
 use crate::frame::{Rate, Rates};
 use crate::shade::{Shading, Surface};
+use crate::streams::generator;
 
 /// A scene to be lit by paths.
 pub(super) struct PathTracer<'a> {
@@ -71,7 +72,7 @@ impl<'a> PathTracer<'a> {
             owner: path / samples,
             surface: surfaces[path / samples],
             weight: Vec3::ONE,
-            rng: walk::generator(seed, first + path as u64),
+            rng: generator(seed, first + path as u64),
         };
         (0..paths).into_par_iter().map(vertex).collect()
     }

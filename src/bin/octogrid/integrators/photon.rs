@@ -22,6 +22,7 @@ use super::walk::{self, Flight, Vertex};
 use super::{BAND, Settings};
 use crate::frame::{self, Rate};
 use crate::shade::{Shading, Surface};
+use crate::streams::generator;
 
 /// Patches over the square root of particles. Blur goes with the width of a patch, 1 / sqrt(patches),
 /// and noise with 1 / sqrt(particles / patches): the square root lets both fall alike.
@@ -47,7 +48,7 @@ impl PhotonMap {
         let mut flux = vec![DVec3::ZERO; patches.len()];
         frame::each_band(particles, BAND, |band| {
             let emit = |particle| {
-                let rng = walk::generator(settings.seed, particle as u64);
+                let rng = generator(settings.seed, particle as u64);
                 emit(shading, emitters, particles, rng)
             };
             let mut flights: Vec<Flight> = band.into_par_iter().map(emit).collect();

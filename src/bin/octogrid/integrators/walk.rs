@@ -37,11 +37,6 @@ enum Fate {
     Absorbed,
 }
 
-/// A generator for one of many walks.
-pub(super) fn generator(seed: u64, walk: u64) -> Rng {
-    Rng::new(seed ^ Rng::new(walk).bits())
-}
-
 /// A direction on the side of a unit normal, with the density cos / pi.
 pub(super) fn cosine(normal: DVec3, rng: &mut Rng) -> DVec3 {
     (normal + rng.on_sphere()).normalize_or(normal)

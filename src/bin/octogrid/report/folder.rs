@@ -54,3 +54,8 @@ impl Folder {
         self.write(name, &svg)
     }
 }
+
+/// The name of a scene's file without folder and ending.
+pub(super) fn stem(scene: &str) -> String {
+    Path::new(scene).file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}

@@ -1,7 +1,9 @@
 //! `octogrid report`: measurements, as tables, figures and plots.
 
+mod convergence;
 mod folder;
 mod machine;
+mod numbers;
 mod paper;
 mod plot;
 mod statistics;
@@ -20,6 +22,7 @@ pub(crate) struct Args {
 #[derive(Debug, Subcommand)]
 enum Report {
     Paper(paper::Args),
+    Convergence(convergence::Args),
 }
 
 /// Runs the command.
@@ -27,6 +30,8 @@ enum Report {
 /// # Errors
 /// On wrong parameters, on files that can't be read or written, and where a build fails.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let Report::Paper(args) = &args.report;
-    paper::run(args)
+    match &args.report {
+        Report::Paper(args) => paper::run(args),
+        Report::Convergence(args) => convergence::run(args),
+    }
 }

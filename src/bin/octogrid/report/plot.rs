@@ -4,7 +4,10 @@ use std::error::Error;
 use std::ops::Range;
 
 use plotters::coord::Shift;
+use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
+
+use super::numbers::short;
 
 const SIZE: (u32, u32) = (960, 560);
 /// Width of the legend.
@@ -39,30 +42,55 @@ pub(super) struct Labels<'a> {
     pub(super) title: &'a str,
     pub(super) x: &'a str,
     pub(super) y: &'a str,
+    pub(super) scale: Scale,
 }
 
-/// Series over a logarithmic x and a linear y from 0.
+/// How y runs; x is logarithmic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Scale {
+    /// From 0.
+    Linear,
+    /// Points without a logarithm lie on the lower edge, which is labelled 0.
+    Log,
+}
+
+/// Series over a logarithmic x.
 pub(super) fn svg(labels: &Labels, series: &[Series]) -> Result<String, Box<dyn Error>> {
     let mut text = String::new();
     let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
     area.fill(&WHITE)?;
     let (left, right) = area.split_horizontally(SIZE.0 - LEGEND);
-    draw(&left, labels, series)?;
+    let y = || series.iter().flat_map(|s| &s.points).map(|p| p.1);
+    match labels.scale {
+        Scale::Linear => {
+            let most = y().fold(f64::MIN_POSITIVE, f64::max);
+            draw(&left, labels, series, 0.0..1.1 * most)?;
+        }
+        Scale::Log => {
+            let zeros = y().any(|y| y <= 0.0);
+            let Range { start, end } = around(y());
+            let start = if zeros { start / 4.0 } else { start };
+            draw(&left, labels, series, (start..end).log_scale())?;
+        }
+    }
     legend(&right, series)?;
     area.present()?;
     drop((left, right, area));
     Ok(text)
 }
 
-fn draw(area: &Area, labels: &Labels, series: &[Series]) -> Result<(), Box<dyn Error>> {
-    let points = || series.iter().flat_map(|s| s.points.iter().copied());
-    let y = 0.0..points().map(|p| p.1).fold(f64::MIN_POSITIVE, f64::max) * 1.1;
+fn draw<Y>(area: &Area, labels: &Labels, series: &[Series], y: Y) -> Result<(), Box<dyn Error>>
+where
+    Y: AsRangedCoord<Value = f64>,
+    Y::CoordDescType: ValueFormatter<f64>,
+{
+    let x = around(series.iter().flat_map(|s| &s.points).map(|p| p.0)).log_scale();
     let mut chart = ChartBuilder::on(area)
         .caption(labels.title, (FONT, 18))
         .margin(12)
         .x_label_area_size(46)
         .y_label_area_size(64)
-        .build_cartesian_2d(around(points().map(|p| p.0)).log_scale().base(2.0), y)?;
+        .build_cartesian_2d(x, y)?;
     chart
         .configure_mesh()
         .x_desc(labels.x)
@@ -119,25 +147,13 @@ fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     if high > 0.0 { low / 1.3..high * 1.3 } else { 0.1..1.0 }
 }
 
-/// A number with three digits and no more zeros than it needs.
-fn short(x: f64) -> String {
-    let digits = (2.0 - x.abs().max(1e-9).log10().floor()).clamp(0.0, 9.0) as usize;
-    let text = format!("{x:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_short() {
-        assert_eq!([0.0, 0.05, 1.0, 2.5, 1000.0].map(short), ["0", "0.05", "1", "2.5", "1000"]);
-    }
-
-    #[test]
     fn nothing_to_plot_is_no_failure() {
-        let labels = Labels { title: "none", x: "x", y: "y" };
+        let labels = Labels { title: "none", x: "x", y: "y", scale: Scale::Linear };
         assert!(svg(&labels, &[]).unwrap().contains("<svg"));
     }
 }

@@ -10,7 +10,7 @@ use super::published;
 use crate::failure::Failure;
 use crate::report::folder::Folder;
 use crate::report::machine::Machine;
-use crate::report::plot::Labels;
+use crate::report::plot::{Labels, Scale};
 use crate::report::statistics::Spread;
 
 /// All that a report says.
@@ -36,7 +36,8 @@ pub(super) fn write(folder: &Folder, report: &Report) -> Result<(), Failure> {
     for measured in report.scenes {
         for (measure, suffix) in [(Measure::Memory, "memory"), (Measure::Preprocessing, "preprocessing")] {
             let title = format!("{}: speed against {suffix}", measured.scene);
-            let labels = Labels { title: &title, x: measure.label(), y: "speed, Mray/s" };
+            let labels =
+                Labels { title: &title, x: measure.label(), y: "speed, Mray/s", scale: Scale::Linear };
             let name = format!("{}-{suffix}.svg", measured.scene);
             folder.write_plot(&name, &labels, &families::series(measured, measure))?;
         }

@@ -6,7 +6,6 @@ use glam::DVec3;
 use octogrid::{All, BuildOptions, Closest, Counting, Counts, Hit, Query, Ray, Scene};
 use rayon::prelude::*;
 
-use crate::camera::{Pinhole, Viewpoint};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
 use crate::shade::{MOST_GLASS, Shading};
@@ -55,7 +54,7 @@ impl Rays {
     /// Where the scene can't be built.
     pub(super) fn new(loaded: &Loaded, size: [u32; 2], most: usize) -> Result<Self, Failure> {
         let (scene, _) = load::build(&loaded.model, &BuildOptions::default())?;
-        let camera = camera(loaded, &scene, size);
+        let camera = viewpoint::camera(loaded, &scene, size);
         let shading = Shading::new(&loaded.model, &scene, DVec3::Y);
         let row = |y: usize| {
             let pixels = y * size[0] as usize..(y + 1) * size[0] as usize;
@@ -102,19 +101,6 @@ impl Rays {
         });
         std::array::from_fn(|i| (primary[i] + shadow[i]) / self.total().max(1) as f64)
     }
-}
-
-/// The first built-in camera, else a sensible one.
-fn camera(loaded: &Loaded, scene: &Scene, size: [u32; 2]) -> Pinhole {
-    let view = match loaded.cameras.first() {
-        Some(camera) => Viewpoint {
-            eye: DVec3::from_array(camera.eye.map(f64::from)),
-            target: DVec3::from_array(camera.target.map(f64::from)),
-            fov_degrees: camera.vertical_fov_degrees.into(),
-        },
-        None => viewpoint::automatic(&loaded.model, scene, 1),
-    };
-    Pinhole::new(&view, DVec3::Y, size)
 }
 
 /// The rays of evenly spaced rows. Every row is counted, but only those of the sample are kept.

@@ -11,9 +11,9 @@ use super::rays::Rays;
 use super::tables::digits;
 use crate::failure::Failure;
 use crate::output::say;
-use crate::report::folder::Folder;
+use crate::report::folder::{Folder, stem};
 use crate::report::machine::Machine;
-use crate::report::plot::{Labels, Series};
+use crate::report::plot::{Labels, Scale, Series};
 use crate::report::statistics::Spread;
 use crate::{load, table};
 
@@ -178,7 +178,7 @@ fn summary(sweep: &Sweep) -> String {
 
 /// `sweep-NAME.json` and two plots.
 fn write(folder: &Folder, sweep: &Sweep) -> Result<(), Failure> {
-    let stem = std::path::Path::new(sweep.scene).file_stem().unwrap_or_default().to_string_lossy();
+    let stem = stem(sweep.scene);
     #[derive(Serialize)]
     struct File<'a> {
         machine: Machine,
@@ -190,7 +190,7 @@ fn write(folder: &Folder, sweep: &Sweep) -> Result<(), Failure> {
         [("memory", "memory, KB", |p| p.memory), ("preprocessing", "preprocessing, s", |p| p.preprocessing)];
     for (suffix, label, x) in plots {
         let title = format!("{stem}: speed against {suffix}");
-        let labels = Labels { title: &title, x: label, y: "speed, Mray/s" };
+        let labels = Labels { title: &title, x: label, y: "speed, Mray/s", scale: Scale::Linear };
         folder.write_plot(&format!("sweep-{stem}-{suffix}.svg"), &labels, &series(sweep, x))?;
     }
     Ok(())

@@ -29,6 +29,9 @@ fn help_is_as_documented() {
     assert_data_eq!(help(&["scene", "--help"]), snapbox::file!["cli/help-scene.txt"]);
     assert_data_eq!(help(&["report", "--help"]), snapbox::file!["cli/help-report.txt"]);
     assert_data_eq!(help(&["report", "paper", "--help"]), snapbox::file!["cli/help-report-paper.txt"]);
+    let convergence = help(&["report", "convergence", "--help"]);
+    assert_data_eq!(convergence, snapbox::file!["cli/help-report-convergence.txt"]);
+    assert_data_eq!(help(&["report", "accuracy", "--help"]), snapbox::file!["cli/help-report-accuracy.txt"]);
 }
 
 #[test]

@@ -149,6 +149,12 @@ fn closed_meshes_are_closed() {
     }
 }
 
+/// The sine of the angle between a ray and a triangle.
+fn sine(ray: &Ray, corners: [Vec3; 3]) -> f64 {
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
+    (b - a).cross(c - a).normalize().dot(ray.dir.as_dvec3().normalize()).abs()
+}
+
 /// A set that no longer hits what it is made for would test nothing.
 #[test]
 fn ray_sets_meet_what_they_aim_at() {
@@ -165,7 +171,9 @@ fn ray_sets_meet_what_they_aim_at() {
             .filter(|&prim| exact::intersect(ray, mesh.corners(prim), EdgeRule::Closed).is_some());
         closed.count() != exact::all(&mesh, &line(ray)).len()
     };
-    for set in [RaySet::Random, RaySet::Inside, RaySet::Aimed, RaySet::Axis, RaySet::Planar, RaySet::Scaled] {
+    let general = [RaySet::Random, RaySet::Inside, RaySet::Scaled];
+    let precise = [RaySet::Aimed, RaySet::Axis, RaySet::Planar, RaySet::Grazing, RaySet::Sliver];
+    for set in general.into_iter().chain(precise) {
         let hits = share(set, &|ray| exact::any(&mesh, &line(ray)));
         assert!(hits > 0.25, "{set:?} {hits}");
     }
@@ -176,6 +184,11 @@ fn ray_sets_meet_what_they_aim_at() {
     for set in [RaySet::Aimed, RaySet::Axis, RaySet::Planar] {
         assert!(share(set, &on_edge) > 0.25, "{set:?}");
     }
+    let grazes = |ray: &Ray| {
+        let hit = exact::closest(&mesh, ray);
+        hit.is_hit() && sine(ray, mesh.corners(hit.prim)) < 0.02
+    };
+    assert!(share(RaySet::Grazing, &grazes) > 0.25);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `octogrid report paper`: its files are whole and agree with each other.
+//! `octogrid report`: its files are whole and agree with each other.
 #![cfg(feature = "cli")]
 
 #[path = "cli/support.rs"]
@@ -38,9 +38,7 @@ fn the_papers_report_has_all_its_parts() {
         assert!(run.stdout.contains(&format!("\n({number}) ")), "{number} in {}", run.stdout);
     }
 
-    let csv = std::fs::read_to_string(folder.path("new/report/report.csv")).unwrap();
-    let rows: Vec<Vec<String>> = csv.lines().map(fields).collect();
-    assert!(rows.iter().all(|row| row.len() == rows[0].len()), "{csv}");
+    let rows = csv(&folder, "new/report/report.csv");
     for row in &rows[1..] {
         let numbers = row[3..].iter().filter(|field| !field.is_empty());
         assert!(numbers.map(|n| n.parse::<f64>().unwrap()).all(|n| n.is_finite() && n > 0.0), "{row:?}");
@@ -85,6 +83,65 @@ fn a_sweep_names_the_best_of_each_structure() {
     svg_holds(&folder, "report-paper/sweep-quads-memory.svg", &["memory, KB", "best: "]);
 }
 
+/// Rows of a CSV file, all as long as the header.
+fn csv(folder: &Folder, name: &str) -> Vec<Vec<String>> {
+    let text = std::fs::read_to_string(folder.path(name)).unwrap();
+    let rows: Vec<Vec<String>> = text.lines().map(fields).collect();
+    assert!(rows.iter().all(|row| row.len() == rows[0].len()), "{text}");
+    rows
+}
+
+#[test]
+fn convergence_falls_and_structures_agree() {
+    let folder = Folder::new();
+    let size = ["--size", "24x18", "--samples", "16", "--rounds", "1"];
+    let run = folder.run(&[&["report", "convergence", "room", "--out", "c"], &size[..]].concat());
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    let rows = csv(&folder, "c/report.csv");
+    // Three integrators, four structures, samples 1 to 16.
+    assert_eq!(rows.len(), 1 + 3 * 4 * 5);
+    for curve in rows[1..].chunks(5) {
+        let number = |row: &[String], at: usize| row[at].parse::<f64>().unwrap();
+        assert!(curve.iter().all(|row| number(row, 4) > 0.0 && number(row, 5) > 0.0), "{curve:?}");
+        assert!(number(&curve[4], 4) < 0.8 * number(&curve[0], 4), "{curve:?}");
+        assert_eq!(curve[4][3], "16");
+    }
+    assert_eq!(csv(&folder, "c/summary.csv").len(), 1 + 3 * 4);
+    let json = std::fs::read(folder.path("c/report.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    assert_eq!(json["measured"][1]["integrator"], "path");
+    assert_eq!(json["measured"][1]["curves"].as_array().unwrap().len(), 4);
+    for name in ["room", "room-direct", "room-path", "room-photon"] {
+        let labels = ["run time of an image, s", "RMSE over mean luminance", "slope -"];
+        svg_holds(&folder, &format!("c/{name}.svg"), &labels);
+    }
+}
+
+#[test]
+fn accuracy_finds_the_default_without_fault() {
+    let folder = Folder::new();
+    let args = ["report", "accuracy", "slivers", "--rays", "300", "--rounds", "1", "--out", "a"];
+    let run = folder.run(&args);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    let rows = csv(&folder, "a/report.csv");
+    // Five sets and all of them, four kernels, twelve structures.
+    assert_eq!(rows.len(), 1 + 6 * 4 * 12);
+    let at = |name: &str| rows[0].iter().position(|field| field == name).unwrap();
+    for row in rows[1..].iter().filter(|row| row[at("kernel")] == "exact") {
+        for field in ["wrong_hits", "wrong_ids", "t_max"] {
+            assert_eq!(row[at(field)], "0", "{field} in {row:?}");
+        }
+    }
+    assert_eq!(rows.iter().filter(|row| row[at("default")] == "true").count(), 6);
+    let plain = rows[1..].iter().filter(|row| row[at("kernel")] == "plain");
+    assert!(plain.map(|row| row[at("t_max")].parse::<u64>().unwrap()).any(|ulps| ulps > 0));
+    for set in ["easy", "edge", "far", "sliver", "grazing", "all"] {
+        let labels = ["time a ray on one thread, ns", "share of rays", "default", "Pareto front"];
+        svg_holds(&folder, &format!("a/slivers-{set}-wrong.svg"), &labels);
+        svg_holds(&folder, &format!("a/slivers-{set}-t.svg"), &["error of t at 99.9% of hits, ulps"]);
+    }
+}
+
 #[test]
 fn wrong_use_is_told() {
     let folder = Folder::new();
@@ -95,4 +152,7 @@ fn wrong_use_is_told() {
     assert_eq!((run.code, run.stderr.lines().count()), (Some(1), 1), "{}", run.stderr);
     let run = folder.run(&["report", "paper", "--sweep", "missing.obj"]);
     assert_eq!((run.code, run.stderr.lines().count()), (Some(1), 1), "{}", run.stderr);
+    assert_eq!(folder.run(&["report", "convergence", "--samples", "1"]).code, Some(2));
+    let run = folder.run(&["report", "convergence", "cube", "--size", "8x6"]);
+    assert!(run.code == Some(1) && run.stderr.contains("no lights"), "{}", run.stderr);
 }

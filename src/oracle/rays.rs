@@ -1,5 +1,7 @@
 //! Seeded sets of rays for a mesh: ordinary ones and hazards.
 
+use std::f64::consts::TAU;
+
 use glam::{DVec3, Vec3};
 
 use super::exact;
@@ -23,6 +25,10 @@ pub enum RaySet {
     Axis,
     /// In the plane of a triangle, along its edges and across.
     Planar,
+    /// At points of triangles, almost in their planes.
+    Grazing,
+    /// At points of triangles that are long and thin, from near and far.
+    Sliver,
     /// From 10^6 and 10^18 times the size away.
     Far,
     /// With directions from subnormal to 10^30 long.
@@ -35,13 +41,15 @@ pub enum RaySet {
 
 impl RaySet {
     /// All of them.
-    pub const ALL: [RaySet; 10] = [
+    pub const ALL: [RaySet; 12] = [
         Self::Random,
         Self::Inside,
         Self::Camera,
         Self::Aimed,
         Self::Axis,
         Self::Planar,
+        Self::Grazing,
+        Self::Sliver,
         Self::Far,
         Self::Scaled,
         Self::Interval,
@@ -64,6 +72,8 @@ impl RaySet {
             Self::Aimed => aimed(source),
             Self::Axis => axis(source),
             Self::Planar => planar(source),
+            Self::Grazing => grazing(source),
+            Self::Sliver => sliver(source),
             Self::Far => far(source),
             Self::Scaled => scaled(source),
             Self::Interval => interval(source),
@@ -148,6 +158,23 @@ fn planar(source: &mut Source<'_>) -> Ray {
     let dir = s * (b - a) + t * (c - a);
     let start = source.rng.pick(&[a, b, c, 0.5 * (b + c)]);
     Ray::new(narrow(start - back * dir), narrow(dir))
+}
+
+fn grazing(source: &mut Source<'_>) -> Ray {
+    let corners @ [a, b, c] = source.corners().map(|v| v.as_dvec3());
+    let target = source.within(corners);
+    let normal = (b - a).cross(c - a).normalize_or(DVec3::Y);
+    let along = normal.any_orthonormal_vector().rotate_axis(normal, source.rng.range(0.0, TAU));
+    let angle = source.rng.pick(&[1e-1, 1e-2, 1e-3, 1e-5, 1e-7]);
+    let distance = (b - a).length().max((c - a).length()) * source.rng.pick(&[0.5, 1.0, 10.0]);
+    towards(target - distance * (along + angle * normal), target)
+}
+
+fn sliver(source: &mut Source<'_>) -> Ray {
+    let thin = source.thin();
+    let target = source.within(thin);
+    let distance = source.radius() * source.rng.pick(&[1.5, 0.1, 0.01]);
+    towards(target + distance * source.rng.on_sphere(), target)
 }
 
 fn far(source: &mut Source<'_>) -> Ray {

@@ -71,8 +71,24 @@ impl<'a> Source<'a> {
 
     /// A point of a triangle, before rounding to f32.
     pub(super) fn on_triangle(&mut self) -> DVec3 {
-        let [a, b, c] = self.corners().map(|v| v.as_dvec3());
+        let corners = self.corners().map(|v| v.as_dvec3());
+        self.within(corners)
+    }
+
+    /// A point between three others.
+    pub(super) fn within(&mut self, [a, b, c]: [DVec3; 3]) -> DVec3 {
         a.lerp(b, self.rng.unit()).lerp(c, self.rng.unit())
+    }
+
+    /// The corners of that one of 16 triangles which is the thinnest and has an area.
+    pub(super) fn thin(&mut self) -> [DVec3; 3] {
+        let triangles = [(); 16].map(|()| self.corners().map(|v| v.as_dvec3()));
+        let width = |[a, b, c]: &[DVec3; 3]| {
+            let edges = [b - a, c - b, a - c].map(DVec3::length_squared);
+            let width = (b - a).cross(c - a).length() / edges.into_iter().fold(0.0, f64::max);
+            if width > 0.0 { width } else { f64::INFINITY }
+        };
+        triangles.into_iter().min_by(|a, b| width(a).total_cmp(&width(b))).unwrap_or_default()
     }
 
     /// A vector of small integers, not zero, as long as the bounding sphere's radius is wide but for

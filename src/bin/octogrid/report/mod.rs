@@ -1,5 +1,6 @@
 //! `octogrid report`: measurements, as tables, figures and plots.
 
+mod accuracy;
 mod convergence;
 mod folder;
 mod machine;
@@ -22,6 +23,7 @@ pub(crate) struct Args {
 #[derive(Debug, Subcommand)]
 enum Report {
     Paper(paper::Args),
+    Accuracy(accuracy::Args),
     Convergence(convergence::Args),
 }
 
@@ -32,6 +34,7 @@ enum Report {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     match &args.report {
         Report::Paper(args) => paper::run(args),
+        Report::Accuracy(args) => accuracy::run(args),
         Report::Convergence(args) => convergence::run(args),
     }
 }

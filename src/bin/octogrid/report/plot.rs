@@ -35,6 +35,55 @@ pub(super) struct Series {
     pub(super) points: Vec<(f64, f64)>,
     /// Whether a line joins them.
     pub(super) joined: bool,
+    /// Where it isn't left to the number of the series.
+    pub(super) look: Option<Look>,
+}
+
+/// How points look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Look {
+    /// The number of a colour.
+    pub(super) colour: usize,
+    pub(super) marker: Marker,
+}
+
+/// The shape of a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Marker {
+    Disc,
+    Triangle,
+    Cross,
+    Square,
+    /// Around another marker.
+    Ring,
+    None,
+}
+
+impl Marker {
+    pub(super) const FILLED: [Marker; 4] = [Self::Disc, Self::Triangle, Self::Cross, Self::Square];
+}
+
+impl Look {
+    /// Not only colours differ from series to series.
+    fn of(i: usize, series: &Series) -> Self {
+        series.look.unwrap_or(Self { colour: i, marker: Marker::FILLED[i % 3] })
+    }
+
+    fn colour(self) -> RGBColor {
+        COLOURS[self.colour % COLOURS.len()]
+    }
+
+    fn marker<'a>(self, (x, y): (i32, i32)) -> DynElement<'a, SVGBackend<'a>, (i32, i32)> {
+        let (filled, line) = (self.colour().filled(), self.colour().stroke_width(2));
+        match self.marker {
+            Marker::Disc => Circle::new((x, y), 4, filled).into_dyn(),
+            Marker::Triangle => TriangleMarker::new((x, y), 6, filled).into_dyn(),
+            Marker::Cross => Cross::new((x, y), 4, line).into_dyn(),
+            Marker::Square => Rectangle::new([(x - 4, y - 4), (x + 4, y + 4)], filled).into_dyn(),
+            Marker::Ring => Circle::new((x, y), 9, line).into_dyn(),
+            Marker::None => EmptyElement::at((x, y)).into_dyn(),
+        }
+    }
 }
 
 /// What axes measure, with units.
@@ -64,13 +113,12 @@ pub(super) fn svg(labels: &Labels, series: &[Series]) -> Result<String, Box<dyn 
     match labels.scale {
         Scale::Linear => {
             let most = y().fold(f64::MIN_POSITIVE, f64::max);
-            draw(&left, labels, series, 0.0..1.1 * most)?;
+            draw(&left, labels, series, 0.0..1.1 * most, 0.0)?;
         }
         Scale::Log => {
-            let zeros = y().any(|y| y <= 0.0);
             let Range { start, end } = around(y());
-            let start = if zeros { start / 4.0 } else { start };
-            draw(&left, labels, series, (start..end).log_scale())?;
+            let lowest = if y().any(|y| y <= 0.0) { start / 4.0 } else { start };
+            draw(&left, labels, series, (lowest..end).log_scale(), lowest)?;
         }
     }
     legend(&right, series)?;
@@ -79,18 +127,21 @@ pub(super) fn svg(labels: &Labels, series: &[Series]) -> Result<String, Box<dyn 
     Ok(text)
 }
 
-fn draw<Y>(area: &Area, labels: &Labels, series: &[Series], y: Y) -> Result<(), Box<dyn Error>>
+/// `lowest` is the y of the lower edge.
+fn draw<Y>(area: &Area, labels: &Labels, series: &[Series], y: Y, lowest: f64) -> Result<(), Box<dyn Error>>
 where
     Y: AsRangedCoord<Value = f64>,
     Y::CoordDescType: ValueFormatter<f64>,
 {
-    let x = around(series.iter().flat_map(|s| &s.points).map(|p| p.0)).log_scale();
+    let points = || series.iter().flat_map(|s| &s.points);
+    let axis = around(points().map(|p| p.0));
+    let zeros = lowest > 0.0 && points().any(|p| p.1 <= 0.0);
     let mut chart = ChartBuilder::on(area)
         .caption(labels.title, (FONT, 18))
         .margin(12)
         .x_label_area_size(46)
         .y_label_area_size(64)
-        .build_cartesian_2d(x, y)?;
+        .build_cartesian_2d(axis.clone().log_scale(), y)?;
     chart
         .configure_mesh()
         .x_desc(labels.x)
@@ -103,41 +154,32 @@ where
         .light_line_style(WHITE)
         .draw()?;
     for (i, series) in series.iter().enumerate() {
-        let colour = colour(i);
+        let look = Look::of(i, series);
         if series.joined {
-            chart.draw_series(LineSeries::new(series.points.iter().copied(), colour.stroke_width(2)))?;
+            let points = series.points.iter().map(|&(x, y)| (x, y.max(lowest)));
+            chart.draw_series(LineSeries::new(points, look.colour().stroke_width(2)))?;
         }
-        for point in &series.points {
-            area.draw(&marker(i, chart.backend_coord(point)))?;
+        for &(x, y) in &series.points {
+            area.draw(&look.marker(chart.backend_coord(&(x, y.max(lowest)))))?;
         }
+    }
+    if zeros {
+        let corner = chart.backend_coord(&(axis.start, lowest));
+        area.draw(&Text::new("0", (corner.0 - 16, corner.1 - 7), (FONT, 13)))?;
     }
     Ok(())
 }
 
 fn legend(area: &Area, series: &[Series]) -> Result<(), Box<dyn Error>> {
     for (i, series) in series.iter().enumerate() {
-        let y = 60 + 24 * i as i32;
+        let (look, y) = (Look::of(i, series), 60 + 24 * i as i32);
         if series.joined {
-            area.draw(&PathElement::new([(6, y), (30, y)], colour(i).stroke_width(2)))?;
+            area.draw(&PathElement::new([(6, y), (30, y)], look.colour().stroke_width(2)))?;
         }
-        area.draw(&marker(i, (18, y)))?;
+        area.draw(&look.marker((18, y)))?;
         area.draw(&Text::new(series.name.clone(), (40, y - 7), (FONT, 14)))?;
     }
     Ok(())
-}
-
-/// Circles, then triangles, then crosses, so that not only colours differ.
-fn marker<'a>(i: usize, at: (i32, i32)) -> DynElement<'a, SVGBackend<'a>, (i32, i32)> {
-    let style = colour(i).filled();
-    match i % 3 {
-        0 => Circle::new(at, 4, style).into_dyn(),
-        1 => TriangleMarker::new(at, 6, style).into_dyn(),
-        _ => Cross::new(at, 4, colour(i).stroke_width(2)).into_dyn(),
-    }
-}
-
-fn colour(i: usize) -> RGBColor {
-    COLOURS[i % COLOURS.len()]
 }
 
 /// An interval with room around positive values.

@@ -95,7 +95,7 @@ fn series(measured: &Measured, curve: &Curve, name: &str) -> Series {
     let slope = curve.slope.map_or(String::new(), |s| format!(", slope {:.2}", s.median));
     let seconds = curve.seconds.iter().map(|s| s.median);
     let points = seconds.zip(measured.rmse.iter().copied()).collect();
-    Series { name: format!("{name}{slope}"), points, joined: true }
+    Series { name: format!("{name}{slope}"), points, joined: true, look: None }
 }
 
 /// One line an image and structure.

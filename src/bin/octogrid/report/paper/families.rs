@@ -23,12 +23,14 @@ pub(super) fn series(measured: &Measured, against: Measure) -> Vec<Series> {
         name: (*name).to_owned(),
         points: members.iter().filter_map(named).collect(),
         joined: true,
+        look: None,
     });
     let alone = measured.columns.iter().filter(|c| !CURVES.iter().any(|f| f.1.contains(&&*c.structure)));
     let points = alone.map(|column| Series {
         name: column.structure.clone(),
         points: point(column).into_iter().collect(),
         joined: false,
+        look: None,
     });
     curves.chain(points).collect()
 }

@@ -203,11 +203,13 @@ fn series(sweep: &Sweep, x: Along) -> Vec<Series> {
         name: best.family.to_owned(),
         points: sweep.points.iter().filter(|p| p.family == best.family).map(place).collect(),
         joined: false,
+        look: None,
     });
     let best = sweep.best.iter().map(|best| Series {
         name: format!("best: {}", best.structure),
         points: vec![place(best)],
         joined: false,
+        look: None,
     });
     all.chain(best).collect()
 }

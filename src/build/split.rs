@@ -86,8 +86,9 @@ pub(crate) fn build<L: Lanes, P: Policy>(
         .map(|cluster| Item { cluster, mask: arena.clusters[cluster as usize].occupied() })
         .collect();
     let mut splitter = Splitter { lanes, policy, limits, arena, items, parts: Vec::new() };
+    // Before it is there: a word, and twice where the items of a voxel start.
+    splitter.check_memory(grid.len() * (size_of::<VoxelWord>() + 2 * size_of::<usize>()))?;
     splitter.arena.words.resize(grid.len(), VoxelWord::EMPTY);
-    splitter.check_memory()?;
     let all = 0..splitter.items.len();
     let starts = splitter.distribute(all, &grid);
     for (i, range) in starts.windows(2).enumerate() {
@@ -247,7 +248,7 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
                 VoxelWord::node(arena.bricks.len() - 1)
             }
         };
-        self.check_memory()?;
+        self.check_memory(0)?;
         Ok((node.ok_or(BuildError::TooLarge { what: "voxels" })?, first))
     }
 
@@ -270,7 +271,7 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
                 VoxelWord::leaf(first)
             }
         };
-        self.check_memory()?;
+        self.check_memory(0)?;
         word.ok_or(BuildError::TooLarge { what: "references" })
     }
 
@@ -368,9 +369,10 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
         self.arena.groups.truncate(groups);
     }
 
-    fn check_memory(&self) -> Result<(), BuildError> {
+    /// Whether what is there and `more` bytes stay within the limit.
+    fn check_memory(&self, more: usize) -> Result<(), BuildError> {
         let work = size_of_val(&*self.items) + size_of_val(&*self.parts);
-        let needed = self.arena.bytes() + work;
+        let needed = self.arena.bytes() + work + more;
         if needed > self.limits.memory {
             return Err(BuildError::MemoryLimit { limit: self.limits.memory, needed });
         }

@@ -137,3 +137,15 @@ fn command_lines() {
         check(&folder, line, *code, said);
     }
 }
+
+/// A grid far beyond the memory limit is refused, not made first: there is address space for less.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_grid_beyond_the_memory_limit_is_not_made() {
+    let line = "ulimit -v 2000000 && exec \"$0\" analyze cube --structure uniform --params density=1e30 \
+                --memory-limit 1M";
+    let sh = std::process::Command::new("sh").args(["-c", line, env!("CARGO_BIN_EXE_octogrid")]).output();
+    let output = sh.expect("there is a shell");
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("limit of 1048576"), "{output:?}");
+}

@@ -3,6 +3,7 @@
 //! Exit codes: 0 success; 1 expected failure, told in one line on standard error; 2 wrong usage.
 
 mod analyze;
+mod answer;
 mod args;
 mod camera;
 mod failure;

@@ -4,14 +4,10 @@
 //! claims; a damaged file must give an error, not exhaust memory or the stack.
 
 use std::fmt::Write as _;
-use std::fs::File;
-use std::io::{self, BufReader, Read, Write};
-use std::path::Path;
+use std::io::{self, Read, Write};
 
 use npyz::{AutoSerialize, WriterBuilder};
 use octogrid::Ray;
-
-use crate::failure::Failure;
 
 /// The longest header that is read; that of an array of rays has 118 bytes.
 const MAX_HEADER: usize = 1 << 16;
@@ -21,14 +17,10 @@ const ROW: usize = size_of::<Ray>();
 /// Reads rays: float32, shape (n, 8), C order.
 ///
 /// # Errors
-/// Where the file can't be read or holds something else.
-pub(crate) fn read_rays(path: &Path) -> Result<Vec<Ray>, Failure> {
-    let read = || -> Result<Vec<Ray>, String> {
-        let mut file = BufReader::with_capacity(1 << 20, File::open(path).map_err(|e| e.to_string())?);
-        let rows = ray_count(&read_header(&mut file)?)?;
-        read_rows(&mut file, rows)
-    };
-    read().map_err(|e| Failure::at(path, e))
+/// Where the file can't be read or holds something else; says which.
+pub(crate) fn read_rays(file: &mut impl Read) -> Result<Vec<Ray>, String> {
+    let rows = ray_count(&read_header(file)?)?;
+    read_rows(file, rows)
 }
 
 /// The text of the header.

@@ -1,17 +1,19 @@
 //! `octogrid trace`: rays of a file against a scene, hits to a file.
 
-use std::io::{self, Write};
-use std::path::PathBuf;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::ValueEnum;
-use octogrid::{Hit, HitLists, Ray, Scene};
+use octogrid::{Ray, Scene};
 use serde::Serialize;
 
+use crate::answer::Answer;
 use crate::args::{BuildArgs, Choice};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
-use crate::npy::{self, AllRow, HitRow};
+use crate::npy;
 use crate::output::{Output, say};
 use crate::pool::ThreadArgs;
 use crate::table;
@@ -82,7 +84,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let options = args.build.options(args.structure)?;
     let output = Output::at(&args.hits)?;
     let loaded = load::load(&args.scene)?;
-    let rays = npy::read_rays(&args.rays)?;
+    let rays = read_rays(&args.rays)?;
     let (report, answer) = args.threads.run(|| {
         let (scene, build_ms) = load::build(&loaded.model, &options)?;
         let (answer, seconds) = ask(&scene, &rays, args.query, args.repeat);
@@ -96,56 +98,26 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     say(summary(&report))
 }
 
-/// The answers to all rays.
-enum Answer {
-    Closest(Vec<Hit>),
-    Any(Vec<bool>),
-    All(HitLists),
-}
-
-impl Answer {
-    fn hits(&self) -> usize {
-        match self {
-            Self::Closest(hits) => hits.iter().filter(|h| h.is_hit()).count(),
-            Self::Any(hits) => hits.iter().filter(|&&h| h).count(),
-            Self::All(lists) => lists.hits.len(),
-        }
-    }
-
-    fn write(&self, file: &mut impl Write) -> io::Result<()> {
-        match self {
-            Self::Closest(hits) => {
-                let rows = hits.iter().map(|&Hit { t, u, v, prim }| HitRow { t, u, v, prim });
-                npy::write_rows(file, hits.len(), rows)
-            }
-            Self::Any(hits) => npy::write_rows(file, hits.len(), hits.iter().copied()),
-            Self::All(lists) => {
-                let of_ray = |(ray, ends): (usize, &[usize])| (ray as u32, ends[0]..ends[1]);
-                let rows = lists.offsets.windows(2).enumerate().map(of_ray).flat_map(|(ray, range)| {
-                    let row = move |&Hit { t, u, v, prim }: &Hit| AllRow { ray, t, u, v, prim };
-                    lists.hits[range].iter().map(row)
-                });
-                npy::write_rows(file, lists.hits.len(), rows)
-            }
-        }
-    }
+/// Reads the rays.
+///
+/// # Errors
+/// Where the file can't be read or holds something else.
+fn read_rays(path: &Path) -> Result<Vec<Ray>, Failure> {
+    let file = File::open(path).map_err(|e| Failure::at(path, e))?;
+    npy::read_rays(&mut BufReader::with_capacity(1 << 20, file)).map_err(|e| Failure::at(path, e))
 }
 
 /// The answer, and the sorted seconds of each repetition.
 fn ask(scene: &Scene, rays: &[Ray], question: Question, repeat: u32) -> (Answer, Vec<f64>) {
     let mut answer = match question {
-        Question::Closest => Answer::Closest(vec![Hit::MISS; rays.len()]),
-        Question::Any => Answer::Any(vec![false; rays.len()]),
-        Question::All => Answer::All(HitLists::default()),
+        Question::Closest => Answer::closest(rays.len()),
+        Question::Any => Answer::any(rays.len()),
+        Question::All => Answer::all(),
     };
     let mut seconds = Vec::new();
     for _ in 0..repeat {
         let start = Instant::now();
-        match &mut answer {
-            Answer::Closest(hits) => scene.closest_batch(rays, hits),
-            Answer::Any(hits) => scene.occluded_batch(rays, hits),
-            Answer::All(lists) => *lists = scene.all_batch(rays),
-        }
+        answer.ask(scene, rays);
         seconds.push(start.elapsed().as_secs_f64());
     }
     seconds.sort_by(f64::total_cmp);

@@ -1,6 +1,13 @@
 //! Comparing one scene's answers, and those of brute force, with what they must be.
 
+#[cfg(feature = "parallel")]
+use std::collections::BTreeMap;
 use std::fmt::Debug;
+#[cfg(feature = "parallel")]
+use std::sync::{Arc, Mutex};
+
+#[cfg(feature = "parallel")]
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::disagreement::Disagreement;
 use super::scan::Answer;
@@ -98,8 +105,7 @@ impl<'a> Subject<'a> {
     ) -> Result<usize, Box<Disagreement>> {
         let mut closest = vec![Hit::MISS; rays.len()];
         let mut occluded = vec![false; rays.len()];
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");
-        let lists = pool.install(|| {
+        let lists = pool(threads).install(|| {
             self.scene.closest_batch(rays, &mut closest);
             self.scene.occluded_batch(rays, &mut occluded);
             self.scene.all_batch(rays)
@@ -172,6 +178,15 @@ impl<'a> Subject<'a> {
         let prims = prims(answer).chain(hits.iter().map(|hit| hit.prim));
         Err(Disagreement::new(&self.name, query, expected, found).on(ray, self.mesh, prims))
     }
+}
+
+/// A pool of that many threads. Starting one takes longer than a small case, so each is kept.
+#[cfg(feature = "parallel")]
+fn pool(threads: usize) -> Arc<ThreadPool> {
+    static POOLS: Mutex<BTreeMap<usize, Arc<ThreadPool>>> = Mutex::new(BTreeMap::new());
+    let start =
+        || Arc::new(ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads"));
+    POOLS.lock().expect("all pools have started").entry(threads).or_insert_with(start).clone()
 }
 
 /// The triangles of an answer.

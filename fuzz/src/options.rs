@@ -1,0 +1,52 @@
+//! How to build a structure, in range or not.
+
+use arbitrary::Arbitrary;
+use octogrid::descent::Walk;
+use octogrid::{BuildOptions, HybridParams, Isa, OctreeParams, RecursiveParams, Structure, UniformParams};
+
+/// Any parameters of any structure.
+#[derive(Arbitrary, Clone, Debug)]
+pub struct Options {
+    memory_limit: u32,
+    general_walk: bool,
+    structure: AnyStructure,
+}
+
+#[derive(Arbitrary, Clone, Copy, Debug)]
+enum AnyStructure {
+    Uniform { density: f32 },
+    Recursive { threshold: u8, divisions: u8, top_grid: bool },
+    Octree { threshold: u8, plane_weight: u32 },
+    Hybrid { density: f32, levels: u8, costs: [f32; 3] },
+}
+
+impl Options {
+    /// The options of the library; the memory limit is below 1 MiB to keep an execution short.
+    pub fn with(&self, isa: Isa) -> BuildOptions {
+        BuildOptions {
+            structure: self.structure.into(),
+            memory_limit: self.memory_limit as usize >> 12,
+            isa,
+            walk: if self.general_walk { Walk::General } else { Walk::Special },
+        }
+    }
+}
+
+impl From<AnyStructure> for Structure {
+    fn from(structure: AnyStructure) -> Self {
+        match structure {
+            AnyStructure::Uniform { density } => Self::Uniform(UniformParams { density }),
+            AnyStructure::Recursive { threshold, divisions, top_grid } => {
+                let [threshold, divisions] = [threshold, divisions].map(u32::from);
+                Self::Recursive(RecursiveParams { threshold, divisions, top_grid })
+            }
+            AnyStructure::Octree { threshold, plane_weight } => {
+                Self::Octree(OctreeParams { threshold: threshold.into(), plane_weight })
+            }
+            AnyStructure::Hybrid { density, levels, costs: [group_cost, brick_cost, voxel_cost] } => {
+                let levels = levels.into();
+                Self::Hybrid(HybridParams { density, levels, group_cost, brick_cost, voxel_cost })
+            }
+        }
+    }
+}

@@ -23,6 +23,8 @@ mod rational;
 pub mod rays;
 mod scan;
 mod source;
+#[cfg(test)]
+mod subject;
 
 pub use agree::{Agreement, Report, assert_agree, check_agree};
 pub use disagreement::Disagreement;

@@ -141,6 +141,13 @@ impl Grid {
         [1, self.dims[0], self.dims[0] * self.dims[1]]
     }
 
+    /// Voxels twice as wide around the same middle, so that what was inside is so by no smaller part.
+    pub(crate) fn coarser(&self) -> Self {
+        let odd = self.dims.map(|n| 0.5 * f64::from(n % 2) * self.cell);
+        let lo = std::array::from_fn(|axis| self.lo[axis] - odd[axis]);
+        Self::new(lo, 2.0 * self.cell, self.dims.map(|n| n.div_ceil(2)))
+    }
+
     /// The lower corner of the voxel with these indices.
     pub(crate) fn corner(&self, index: [u32; 3]) -> [f64; 3] {
         std::array::from_fn(|axis| self.lo[axis] + f64::from(index[axis]) * self.cell)

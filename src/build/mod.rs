@@ -53,13 +53,11 @@ fn finish<P: Policy>(
         Form::Lists { .. } => (LIST_MARGIN, 1.0 / f64::from(1u32 << 22), LIST_LEVELS),
         Form::Bricks => (BRICK_MARGIN, 1.0 / f64::from(1u32 << 14), BRICK_LEVELS),
     };
-    let grid = policy.grid();
-    let size = grid.cell * f64::from(grid.longest());
     let limits = split::Limits {
         memory: options.memory_limit,
         references: (1 << 16) + 64 * analysis.triangles.len(),
-        margin: margin * size,
-        least_side: least_side * size,
+        margin,
+        least_side,
         levels: levels.min(most_levels),
     };
     dispatch!(options.isa, lanes => split::build(lanes, policy, clusters, limits))

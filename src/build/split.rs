@@ -72,9 +72,8 @@ pub(crate) fn build<L: Lanes, P: Policy>(
     clusters: Vec<Cluster>,
     limits: Limits,
 ) -> Result<Arena, BuildError> {
-    let grid = policy.grid();
     let arena = Arena {
-        grid,
+        grid: policy.grid(),
         form: policy.form(),
         clusters,
         words: Vec::new(),
@@ -85,12 +84,15 @@ pub(crate) fn build<L: Lanes, P: Policy>(
     let items = (0..arena.clusters.len() as u32)
         .map(|cluster| Item { cluster, mask: arena.clusters[cluster as usize].occupied() })
         .collect();
-    let mut splitter = Splitter { lanes, policy, limits, arena, items, parts: Vec::new() };
+    let (margin, least_side) = (0.0, 0.0);
+    let mut splitter =
+        Splitter { lanes, policy, limits, margin, least_side, arena, items, parts: Vec::new() };
+    let grid = splitter.place_grid();
     // Before it is there: a word, and twice where the items of a voxel start.
     splitter.check_memory(grid.len() * (size_of::<VoxelWord>() + 2 * size_of::<usize>()))?;
+    splitter.list_parts(0..splitter.items.len(), &grid)?;
+    let starts = splitter.sort_parts(&grid);
     splitter.arena.words.resize(grid.len(), VoxelWord::EMPTY);
-    let all = 0..splitter.items.len();
-    let starts = splitter.distribute(all, &grid);
     for (i, range) in starts.windows(2).enumerate() {
         let (x, yz) = (i as u32 % grid.dims[0], i as u32 / grid.dims[0]);
         let corner = grid.corner([x, yz % grid.dims[1], yz / grid.dims[1]]);
@@ -110,12 +112,12 @@ pub(crate) fn build<L: Lanes, P: Policy>(
 pub(crate) struct Limits {
     /// Bytes of the arena, at most.
     pub(crate) memory: usize,
-    /// References, beyond which voxels are no longer divided.
+    /// References, beyond which voxels are no longer divided and the top grid gets coarser.
     pub(crate) references: usize,
     /// The distance by which voxels are enlarged, so that what a ray meets lies in a voxel that its walk
-    /// visits in spite of the walk's rounding errors.
+    /// visits in spite of the walk's rounding errors; in sizes of the top grid.
     pub(crate) margin: f64,
-    /// The least side of a voxel.
+    /// The least side of a voxel, in sizes of the top grid.
     pub(crate) least_side: f64,
     /// Levels below the top grid, at most.
     pub(crate) levels: u32,
@@ -144,6 +146,9 @@ struct Splitter<'a, L, P> {
     lanes: L,
     policy: &'a P,
     limits: Limits,
+    /// The margin and the least side for the grid at hand.
+    margin: f64,
+    least_side: f64,
     arena: Arena,
     /// The work list: the items of the voxel at hand above those of the voxels around it.
     items: Vec<Item>,
@@ -152,12 +157,37 @@ struct Splitter<'a, L, P> {
 }
 
 impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
+    /// The policy's grid or, where its voxels would have too many references, the next coarser one: large
+    /// triangles one above the other would be in all of them.
+    fn place_grid(&mut self) -> Grid {
+        let mut grid = self.arena.grid;
+        loop {
+            let size = grid.cell * f64::from(grid.longest());
+            (self.margin, self.least_side) = (self.limits.margin * size, self.limits.least_side * size);
+            if grid.len() == 1 || self.estimate(&grid) <= self.limits.references as f64 {
+                self.arena.grid = grid;
+                return grid;
+            }
+            grid = grid.coarser();
+        }
+    }
+
+    /// About how many references the voxels of a grid would have, seldom less: all voxels in the box of a
+    /// cluster, or as many as three planes may meet of them.
+    fn estimate(&self, grid: &Grid) -> f64 {
+        let voxels = |item: &Item| {
+            let [x, y, z] = self.range(*item, grid).map(|range| range.len() as f64);
+            (x * y * z).min(3.0 * (x * y + y * z + z * x))
+        };
+        self.items.iter().map(voxels).sum()
+    }
+
     /// Makes a voxel and returns its word and cost.
     fn voxel(&mut self, range: Range<usize>, cube: Cube, depth: u32) -> Result<(VoxelWord, f32), BuildError> {
         if range.is_empty() {
             return Ok((VoxelWord::EMPTY, 0.0));
         }
-        let bounds = cube.enlarged(self.limits.margin);
+        let bounds = cube.enlarged(self.margin);
         let view = VoxelView { items: &self.items[range.clone()], clusters: &self.arena.clusters, bounds };
         let leaf_cost = self.policy.leaf_cost(&view);
         let divides = self.may_divide(cube, depth) && self.policy.divides(&view, leaf_cost);
@@ -176,7 +206,7 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
     fn may_divide(&self, cube: Cube, depth: u32) -> bool {
         let references = self.arena.references.len() + WIDTH * self.arena.groups.len();
         depth < self.limits.levels
-            && cube.side / f64::from(self.arena.form.divisions()) >= self.limits.least_side
+            && cube.side / f64::from(self.arena.form.divisions()) >= self.least_side
             && references < self.limits.references
     }
 
@@ -191,7 +221,8 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
         let n = form.divisions();
         let parts = Grid::new(cube.lo, cube.side / f64::from(n), [n; 3]);
         let floor = self.items.len();
-        let starts = self.distribute(range.clone(), &parts);
+        self.list_parts(range.clone(), &parts)?;
+        let starts = self.sort_parts(&parts);
         if !self.gains(range, starts[0]..self.items.len()) {
             self.items.truncate(floor);
             return Ok(None);
@@ -288,51 +319,63 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
             for axis in 0..3 {
                 let local =
                     |x: f32, margin: f64| ((f64::from(x) + margin - grid.lo[axis]) / grid.cell) as f32;
-                group.planes[0][axis][lane] = local(b.lo[axis], -self.limits.margin).next_down();
-                group.planes[1][axis][lane] = local(b.hi[axis], self.limits.margin).next_up();
+                group.planes[0][axis][lane] = local(b.lo[axis], -self.margin).next_down();
+                group.planes[1][axis][lane] = local(b.hi[axis], self.margin).next_up();
             }
             group.clusters[lane] = Reference::new(item.cluster, last);
         }
         group
     }
 
-    /// Sorts items by the voxels of `grid` that they overlap, on top of the work list.
-    ///
-    /// Returns where the items of each voxel start, and the end. Counting sort: within a voxel the
-    /// order of the items stays.
-    fn distribute(&mut self, range: Range<usize>, grid: &Grid) -> Vec<usize> {
+    /// Lists the items with the voxels of `grid` that they overlap.
+    fn list_parts(&mut self, range: Range<usize>, grid: &Grid) -> Result<(), BuildError> {
         let mut parts = std::mem::take(&mut self.parts);
         parts.clear();
         for i in range {
             self.scatter(self.items[i], grid, &mut parts);
+            // Each is going to be an item, too.
+            self.check_memory(parts.len() * (size_of::<(u32, Item)>() + size_of::<Item>()))?;
         }
+        self.parts = parts;
+        Ok(())
+    }
+
+    /// Sorts the listed parts by voxel, on top of the work list.
+    ///
+    /// Returns where the items of each voxel start, and the end. Counting sort: within a voxel the
+    /// order of the items stays.
+    fn sort_parts(&mut self, grid: &Grid) -> Vec<usize> {
         let mut starts = vec![0; grid.len() + 1];
-        parts.iter().for_each(|(voxel, _)| starts[*voxel as usize + 1] += 1);
+        self.parts.iter().for_each(|(voxel, _)| starts[*voxel as usize + 1] += 1);
         starts[0] = self.items.len();
         for i in 0..grid.len() {
             starts[i + 1] += starts[i];
         }
         self.items.resize(starts[grid.len()], Item { cluster: 0, mask: 0 });
         let mut next = starts.clone();
-        for &(voxel, item) in &parts {
+        for &(voxel, item) in &self.parts {
             self.items[next[voxel as usize]] = item;
             next[voxel as usize] += 1;
         }
-        self.parts = parts;
         starts
+    }
+
+    /// The voxels of `grid` that the box of an item overlaps.
+    fn range(&self, item: Item, grid: &Grid) -> [Range<u32>; 3] {
+        let bounds = self.arena.clusters[item.cluster as usize].bounds(item.mask);
+        std::array::from_fn(|axis| {
+            let index = |x: f64| ((x - grid.lo[axis]) / grid.cell) as u32;
+            let last = grid.dims[axis] - 1;
+            let lo = index(f64::from(bounds.lo[axis].next_down()) - self.margin).min(last);
+            let hi = index(f64::from(bounds.hi[axis].next_up()) + self.margin).min(last);
+            lo..hi + 1
+        })
     }
 
     /// Lists the voxels of `grid` that an item overlaps.
     fn scatter(&self, item: Item, grid: &Grid, parts: &mut Vec<(u32, Item)>) {
         let cluster = &self.arena.clusters[item.cluster as usize];
-        let bounds = cluster.bounds(item.mask);
-        let range: [Range<u32>; 3] = std::array::from_fn(|axis| {
-            let index = |x: f64| ((x - grid.lo[axis]) / grid.cell) as u32;
-            let last = grid.dims[axis] - 1;
-            let lo = index(f64::from(bounds.lo[axis].next_down()) - self.limits.margin).min(last);
-            let hi = index(f64::from(bounds.hi[axis].next_up()) + self.limits.margin).min(last);
-            lo..hi + 1
-        });
+        let range = self.range(item, grid);
         let alone = range.iter().all(|r| r.len() == 1);
         let corners = cluster.lanes(self.lanes);
         let strides = grid.strides();
@@ -343,7 +386,7 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
                     let inside = if alone {
                         0xff
                     } else {
-                        overlapping(self.lanes, corners, &cube.enlarged(self.limits.margin)) as u8
+                        overlapping(self.lanes, corners, &cube.enlarged(self.margin)) as u8
                     };
                     let mask = item.mask & inside;
                     if mask != 0 {
@@ -369,7 +412,7 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
         self.arena.groups.truncate(groups);
     }
 
-    /// Whether what is there and `more` bytes stay within the limit.
+    /// Fails where what is held and `more` bytes exceed the limit.
     fn check_memory(&self, more: usize) -> Result<(), BuildError> {
         let work = size_of_val(&*self.items) + size_of_val(&*self.parts);
         let needed = self.arena.bytes() + work + more;

@@ -73,28 +73,21 @@ impl Agreement {
     /// # Errors
     /// The first disagreement.
     pub fn check(&self, mesh: &TriMesh<'_>, rays: &[Ray]) -> Result<Report, Box<Disagreement>> {
-        let answers = brute::answers(mesh, rays);
-        let mut report = Report { rays: rays.len(), structures: self.structures.len(), comparisons: 0 };
-        for i in sample(rays.len(), self.exact) {
-            compare::with_exact(mesh, &rays[i], &answers[i], &exact::answer(mesh, &rays[i]))?;
-            report.comparisons += 1;
-        }
+        self.build(mesh)?.check(rays)
+    }
+
+    /// Builds every structure for every instruction set, to compare them on more than one set of rays.
+    ///
+    /// # Errors
+    /// A build that fails, and an invariant that does not hold.
+    pub fn build<'a>(&self, mesh: &TriMesh<'a>) -> Result<Subjects<'a>, Box<Disagreement>> {
+        let mut subjects = Vec::new();
         for &isa in &self.isas {
             for &structure in &self.structures {
-                let subject = Subject::new(build(mesh, structure, isa)?, mesh, isa)?;
-                for (ray, answer) in rays.iter().zip(&answers) {
-                    report.comparisons += subject.one_by_one(ray, answer)?;
-                }
-                for i in sample(rays.len(), self.decorated) {
-                    report.comparisons += subject.decorated(&rays[i], &answers[i])?;
-                }
-                #[cfg(feature = "parallel")]
-                for &threads in &self.threads {
-                    report.comparisons += subject.batches(threads, rays, &answers)?;
-                }
+                subjects.push(Subject::new(build(mesh, structure, isa)?, mesh, isa)?);
             }
         }
-        Ok(report)
+        Ok(Subjects { agreement: self.clone(), mesh: *mesh, subjects })
     }
 }
 
@@ -104,11 +97,56 @@ impl Default for Agreement {
     }
 }
 
+/// The scenes of one mesh to be compared, made by [`Agreement::build`].
+pub struct Subjects<'a> {
+    agreement: Agreement,
+    mesh: TriMesh<'a>,
+    subjects: Vec<Subject<'a>>,
+}
+
+impl<'a> Subjects<'a> {
+    /// The mesh.
+    pub fn mesh(&self) -> &TriMesh<'a> {
+        &self.mesh
+    }
+
+    /// Compares.
+    ///
+    /// # Errors
+    /// The first disagreement.
+    pub fn check(&self, rays: &[Ray]) -> Result<Report, Box<Disagreement>> {
+        let agreement = &self.agreement;
+        let answers = brute::answers(&self.mesh, rays);
+        let mut report =
+            Report { rays: rays.len(), structures: agreement.structures.len(), ..Report::default() };
+        for i in sample(rays.len(), agreement.exact) {
+            compare::with_exact(&self.mesh, &rays[i], &answers[i], &exact::answer(&self.mesh, &rays[i]))?;
+            report.exact += 1;
+            report.comparisons += 1;
+        }
+        for subject in &self.subjects {
+            for (ray, answer) in rays.iter().zip(&answers) {
+                report.comparisons += subject.one_by_one(ray, answer)?;
+            }
+            for i in sample(rays.len(), agreement.decorated) {
+                report.comparisons += subject.decorated(&rays[i], &answers[i])?;
+            }
+            #[cfg(feature = "parallel")]
+            for &threads in &agreement.threads {
+                report.comparisons += subject.batches(threads, rays, &answers)?;
+            }
+        }
+        Ok(report)
+    }
+}
+
 /// How much was compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Report {
-    /// Rays.
+    /// Rays, each compared with brute force.
     pub rays: usize,
+    /// Of these, compared with exact arithmetic.
+    pub exact: usize,
     /// Structures.
     pub structures: usize,
     /// Answers that were compared.

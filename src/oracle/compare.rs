@@ -45,16 +45,16 @@ fn close((a, b): (&Hit, &Hit)) -> bool {
 /// A scene under test.
 pub(super) struct Subject<'a> {
     scene: Scene,
-    mesh: &'a TriMesh<'a>,
+    mesh: TriMesh<'a>,
     name: String,
 }
 
 impl<'a> Subject<'a> {
     /// Takes a scene whose own invariants hold.
-    pub(super) fn new(scene: Scene, mesh: &'a TriMesh<'a>, isa: Isa) -> Result<Self, Box<Disagreement>> {
+    pub(super) fn new(scene: Scene, mesh: &TriMesh<'a>, isa: Isa) -> Result<Self, Box<Disagreement>> {
         let name = format!("{}, {isa}", scene.structure());
         match scene.validate() {
-            Ok(_) => Ok(Self { scene, mesh, name }),
+            Ok(_) => Ok(Self { scene, mesh: *mesh, name }),
             Err(violation) => Err(Disagreement::new(name, "validate", &"a valid structure", &violation)),
         }
     }
@@ -176,7 +176,7 @@ impl<'a> Subject<'a> {
         hits: &[Hit],
     ) -> Result<T, Box<Disagreement>> {
         let prims = prims(answer).chain(hits.iter().map(|hit| hit.prim));
-        Err(Disagreement::new(&self.name, query, expected, found).on(ray, self.mesh, prims))
+        Err(Disagreement::new(&self.name, query, expected, found).on(ray, &self.mesh, prims))
     }
 }
 

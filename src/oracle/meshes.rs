@@ -110,7 +110,7 @@ fn indexed(rng: &mut Rng, n: usize, mut vertex: impl FnMut(&mut Rng) -> [f32; 3]
     (vertices, triangles)
 }
 
-fn soup(triangles: Vec<[Vec3; 3]>) -> Mesh {
+pub(super) fn soup(triangles: Vec<[Vec3; 3]>) -> Mesh {
     let indices = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     (triangles.iter().flatten().map(|v| v.to_array()).collect(), indices)
 }

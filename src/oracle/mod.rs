@@ -5,7 +5,9 @@
 //!
 //! - [`exact`]: integers of any length, correct by construction, no code shared with the structures;
 //! - [`brute`]: the library's own kernel on every triangle, the same bits as every structure;
-//! - [`rays`] and [`meshes`]: seeded cases, the ordinary ones and the hazards;
+//! - [`rays`], [`meshes`] and [`extremes`]: seeded cases, the ordinary ones and the dangerous;
+//! - [`hazards`]: which of these have broken others, by name;
+//! - [`watertight`]: closed meshes, and rays that must not get out of them;
 //! - [`Agreement`]: builds structures and compares all their answers with both.
 
 mod agree;
@@ -15,7 +17,9 @@ mod compare;
 mod coverage;
 mod disagreement;
 pub mod exact;
+pub mod extremes;
 mod filter;
+pub mod hazards;
 #[cfg(test)]
 mod lattice;
 pub mod meshes;
@@ -25,7 +29,8 @@ mod scan;
 mod source;
 #[cfg(test)]
 mod subject;
+pub mod watertight;
 
-pub use agree::{Agreement, Report, assert_agree, check_agree};
+pub use agree::{Agreement, Report, Subjects, assert_agree, check_agree};
 pub use disagreement::Disagreement;
 pub use scan::Answer;

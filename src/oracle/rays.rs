@@ -23,6 +23,9 @@ pub enum RaySet {
     Aimed,
     /// Along axes and with one component of zero of either sign, from the coordinates of vertices.
     Axis,
+    /// Along diagonals of two or three axes, from vertices and points of edges: through edges and
+    /// corners of voxels.
+    Diagonal,
     /// In the plane of a triangle, along its edges and across.
     Planar,
     /// At points of triangles, almost in their planes.
@@ -47,6 +50,7 @@ impl RaySet {
         Self::Camera,
         Self::Aimed,
         Self::Axis,
+        Self::Diagonal,
         Self::Planar,
         Self::Grazing,
         Self::Sliver,
@@ -71,6 +75,7 @@ impl RaySet {
             Self::Inside => inside(source),
             Self::Aimed => aimed(source),
             Self::Axis => axis(source),
+            Self::Diagonal => diagonal(source),
             Self::Planar => planar(source),
             Self::Grazing => grazing(source),
             Self::Sliver => sliver(source),
@@ -84,8 +89,15 @@ impl RaySet {
 
 /// `n` rays of all sets in turn.
 pub fn hazards(mesh: &TriMesh<'_>, seed: u64, n: usize) -> Vec<Ray> {
-    let sets = RaySet::ALL.map(|set| set.rays(mesh, seed, n.div_ceil(RaySet::ALL.len())));
-    (0..n).map(|i| sets[i % sets.len()][i / sets.len()]).collect()
+    in_turn(&RaySet::ALL, mesh, seed, n)
+}
+
+/// `n` rays of some sets in turn; none where there are no sets.
+pub fn in_turn(sets: &[RaySet], mesh: &TriMesh<'_>, seed: u64, n: usize) -> Vec<Ray> {
+    let each = n.div_ceil(sets.len().max(1));
+    let rays: Vec<Vec<Ray>> = sets.iter().map(|set| set.rays(mesh, seed, each)).collect();
+    let end = if sets.is_empty() { 0 } else { n };
+    (0..end).map(|i| rays[i % rays.len()][i / rays.len()]).collect()
 }
 
 fn random(source: &mut Source<'_>) -> Ray {
@@ -115,7 +127,7 @@ fn aimed(source: &mut Source<'_>) -> Ray {
         0 => towards(source.around(1.5), target),
         1 => towards(source.vertex(), target),
         _ => {
-            let step = source.short_vector();
+            let step = source.short_vector(4);
             Ray::new(narrow(target - source.rng.pick(&[1.0, 2.0, 4.0, 0.5]) * step), narrow(step))
         }
     }
@@ -128,7 +140,7 @@ fn along(source: &mut Source<'_>, free: usize) -> Ray {
     let mut ray = Ray::new(target, [0.0; 3]);
     for i in 0..3 {
         let axis = (first + i) % 3;
-        let component = if i < free { source.short_vector()[axis] as f32 } else { 0.0 };
+        let component = if i < free { source.short_vector(4)[axis] as f32 } else { 0.0 };
         ray.dir[axis] = component * source.rng.pick(&[1.0, -1.0]);
     }
     if ray.dir == Vec3::ZERO {
@@ -152,6 +164,12 @@ fn axis(source: &mut Source<'_>) -> Ray {
     }
 }
 
+fn diagonal(source: &mut Source<'_>) -> Ray {
+    let target = narrow(source.on_edge()).as_dvec3();
+    let dir = source.short_vector(1);
+    Ray::new(narrow(target - source.rng.pick(&[0.0, 1.0, 4.0, 8.0]) * dir), narrow(dir))
+}
+
 fn planar(source: &mut Source<'_>) -> Ray {
     let [a, b, c] = source.corners().map(|v| v.as_dvec3());
     let [s, t, back] = [(); 3].map(|()| f64::from(source.rng.integer(2)));
@@ -165,7 +183,7 @@ fn grazing(source: &mut Source<'_>) -> Ray {
     let target = source.within(corners);
     let normal = (b - a).cross(c - a).normalize_or(DVec3::Y);
     let along = normal.any_orthonormal_vector().rotate_axis(normal, source.rng.range(0.0, TAU));
-    let angle = source.rng.pick(&[1e-1, 1e-2, 1e-3, 1e-5, 1e-7]);
+    let angle = source.rng.pick(&[1e-2, 1e-3, 1e-5, 1e-7, 1e-12]);
     let distance = (b - a).length().max((c - a).length()) * source.rng.pick(&[0.5, 1.0, 10.0]);
     towards(target - distance * (along + angle * normal), target)
 }

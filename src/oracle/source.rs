@@ -91,12 +91,12 @@ impl<'a> Source<'a> {
         triangles.into_iter().min_by(|a, b| width(a).total_cmp(&width(b))).unwrap_or_default()
     }
 
-    /// A vector of small integers, not zero, as long as the bounding sphere's radius is wide but for
-    /// a factor of a few: sums of it and of coordinates often are exact.
-    pub(super) fn short_vector(&mut self) -> DVec3 {
+    /// A vector of integers of at most `most`, not zero, times a power of two, about as long as the
+    /// bounding sphere's radius where they are 4: sums of it and of coordinates often are exact.
+    pub(super) fn short_vector(&mut self, most: usize) -> DVec3 {
         let unit = self.radius().log2().floor().exp2() / 4.0;
         loop {
-            let v = Vec3::from_array([(); 3].map(|()| self.rng.integer(4)));
+            let v = Vec3::from_array([(); 3].map(|()| self.rng.integer(most)));
             if v != Vec3::ZERO {
                 return unit * v.as_dvec3();
             }

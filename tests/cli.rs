@@ -32,6 +32,10 @@ fn help_is_as_documented() {
     let convergence = help(&["report", "convergence", "--help"]);
     assert_data_eq!(convergence, snapbox::file!["cli/help-report-convergence.txt"]);
     assert_data_eq!(help(&["report", "accuracy", "--help"]), snapbox::file!["cli/help-report-accuracy.txt"]);
+    assert_data_eq!(
+        help(&["report", "stability", "--help"]),
+        snapbox::file!["cli/help-report-stability.txt"]
+    );
 }
 
 #[test]

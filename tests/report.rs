@@ -143,9 +143,37 @@ fn accuracy_finds_the_default_without_fault() {
 }
 
 #[test]
+fn stability_is_told_by_hazard_and_mesh() {
+    let folder = Folder::new();
+    let run =
+        folder.run(&["report", "stability", "torus", "--rays", "1", "--seed", "7", "--from-round", "9"]);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{}", run.stdout);
+    assert!(run.stdout.contains("go on with --seed 7 --from-round 10\n"), "{}", run.stdout);
+
+    let json = std::fs::read(folder.path("report-stability/report.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    let sum = |rows: &str, field: &str| -> u64 {
+        json[rows].as_array().unwrap().iter().map(|row| row[field].as_u64().unwrap()).sum()
+    };
+    let closed = sum("closed", "inside") + sum("closed", "outside");
+    assert_eq!(json["rays"].as_u64(), Some(sum("hazards", "rays") + closed));
+    assert_eq!((json["failures"].as_u64(), sum("hazards", "failures")), (Some(0), 0));
+    assert!(json["first_failure"].is_null() && sum("hazards", "exact") > 100);
+    assert_eq!(json["closed"].as_array().unwrap().last().unwrap()["mesh"], "torus");
+
+    let csv = std::fs::read_to_string(folder.path("report-stability/report.csv")).unwrap();
+    let rows: Vec<Vec<String>> = csv.lines().map(fields).collect();
+    assert!(rows.iter().all(|row| row.len() == rows[0].len()), "{csv}");
+    let rays = rows[1..].iter().map(|row| row[4].parse::<u64>().unwrap()).sum();
+    assert_eq!(json["rays"].as_u64(), Some(rays), "{csv}");
+}
+
+#[test]
 fn wrong_use_is_told() {
     let folder = Folder::new();
     assert_eq!(folder.run(&["report"]).code, Some(2));
+    let run = folder.run(&["report", "stability", "plane"]);
+    assert_eq!((run.code, run.stderr.lines().count()), (Some(1), 1), "{}", run.stderr);
     assert_eq!(folder.run(&["report", "paper", "--rounds", "0"]).code, Some(2));
     folder.write("file", "");
     let run = folder.run(&["report", "paper", "--out", "file"]);

@@ -7,6 +7,7 @@ mod machine;
 mod numbers;
 mod paper;
 mod plot;
+mod stability;
 mod statistics;
 
 use clap::Subcommand;
@@ -25,16 +26,18 @@ enum Report {
     Paper(paper::Args),
     Accuracy(accuracy::Args),
     Convergence(convergence::Args),
+    Stability(stability::Args),
 }
 
 /// Runs the command.
 ///
 /// # Errors
-/// On wrong parameters, on files that can't be read or written, and where a build fails.
+/// On wrong parameters, on files that can't be read or written, where a build fails, and where answers differ.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     match &args.report {
         Report::Paper(args) => paper::run(args),
         Report::Accuracy(args) => accuracy::run(args),
         Report::Convergence(args) => convergence::run(args),
+        Report::Stability(args) => stability::run(args),
     }
 }

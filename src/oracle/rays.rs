@@ -44,7 +44,7 @@ pub enum RaySet {
 
 impl RaySet {
     /// All of them.
-    pub const ALL: [RaySet; 12] = [
+    pub const ALL: [RaySet; 13] = [
         Self::Random,
         Self::Inside,
         Self::Camera,

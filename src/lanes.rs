@@ -25,6 +25,9 @@ pub(crate) trait Lanes: Copy {
     /// Eight truth values.
     type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
 
+    /// Runs `f` and all that is inlined into it with the instruction set of the lanes. What is called
+    /// without being inlined loses it, and each operation becomes a call.
+    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R;
     /// The same value in all lanes.
     fn splat(self, x: f32) -> Self::F32;
     /// A value a lane.
@@ -69,6 +72,10 @@ impl<S: Simd> Lanes for Dispatched<S> {
     type F32 = f32x8<S>;
     type Mask = mask32x8<S>;
 
+    #[inline(always)]
+    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
+        self.0.vectorize(f)
+    }
     #[inline(always)]
     fn splat(self, x: f32) -> f32x8<S> {
         f32x8::splat(self.0, x)
@@ -225,6 +232,10 @@ mod portable {
         type F32 = wide::f32x8;
         type Mask = wide::f32x8;
 
+        #[inline(always)]
+        fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
+            f()
+        }
         #[inline(always)]
         fn splat(self, x: f32) -> wide::f32x8 {
             wide::f32x8::splat(x)

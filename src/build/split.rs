@@ -331,11 +331,17 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
     fn list_parts(&mut self, range: Range<usize>, grid: &Grid) -> Result<(), BuildError> {
         let mut parts = std::mem::take(&mut self.parts);
         parts.clear();
-        for i in range {
-            self.scatter(self.items[i], grid, &mut parts);
-            // Each is going to be an item, too.
-            self.check_memory(parts.len() * (size_of::<(u32, Item)>() + size_of::<Item>()))?;
-        }
+        self.lanes.vectorize(
+            #[inline(always)]
+            || {
+                for i in range {
+                    self.scatter(self.items[i], grid, &mut parts);
+                    // Each is going to be an item, too.
+                    self.check_memory(parts.len() * (size_of::<(u32, Item)>() + size_of::<Item>()))?;
+                }
+                Ok(())
+            },
+        )?;
         self.parts = parts;
         Ok(())
     }
@@ -373,6 +379,7 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
     }
 
     /// Lists the voxels of `grid` that an item overlaps.
+    #[inline(always)]
     fn scatter(&self, item: Item, grid: &Grid, parts: &mut Vec<(u32, Item)>) {
         let cluster = &self.arena.clusters[item.cluster as usize];
         let range = self.range(item, grid);

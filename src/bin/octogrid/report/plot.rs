@@ -118,7 +118,7 @@ pub(super) fn svg(labels: &Labels, series: &[Series]) -> Result<String, Box<dyn 
         Scale::Log => {
             let Range { start, end } = around(y());
             let lowest = if y().any(|y| y <= 0.0) { start / 4.0 } else { start };
-            draw(&left, labels, series, (lowest..end).log_scale(), lowest)?;
+            draw(&left, labels, series, (lowest..end).log_scale().base(base(&(lowest..end))), lowest)?;
         }
     }
     legend(&right, series)?;
@@ -141,12 +141,13 @@ where
         .margin(12)
         .x_label_area_size(46)
         .y_label_area_size(64)
-        .build_cartesian_2d(axis.clone().log_scale(), y)?;
+        .build_cartesian_2d(axis.clone().log_scale().base(base(&axis)), y)?;
     chart
         .configure_mesh()
         .x_desc(labels.x)
         .y_desc(labels.y)
         .x_labels(8)
+        .y_labels(8)
         .x_label_formatter(&|x| short(*x))
         .y_label_formatter(&|y| short(*y))
         .label_style((FONT, 13))
@@ -180,6 +181,11 @@ fn legend(area: &Area, series: &[Series]) -> Result<(), Box<dyn Error>> {
         area.draw(&Text::new(series.name.clone(), (40, y - 7), (FONT, 14)))?;
     }
     Ok(())
+}
+
+/// The ratio of labels: powers of ten where there are enough of them, else of two.
+fn base(range: &Range<f64>) -> f64 {
+    if range.end / range.start > 100.0 { 10.0 } else { 2.0 }
 }
 
 /// An interval with room around positive values.

@@ -27,13 +27,13 @@ use crate::{load, table};
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// OBJ files or built-in scenes
-    #[arg(value_name = "SCENE", default_values_t = ["interior".to_owned(), "slivers".to_owned()])]
+    #[arg(value_name = "SCENE", default_values_t = ["interior".to_owned()])]
     scenes: Vec<String>,
     /// The folder for the files, made if there is none
     #[arg(long, value_name = "DIR", default_value = "report-accuracy")]
     out: PathBuf,
     /// Rays a set
-    #[arg(long, value_name = "N", default_value = "20000", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    #[arg(long, value_name = "N", default_value = "4000", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     rays: u32,
     /// Measure this many times, in turns
     #[arg(long, value_name = "N", default_value_t = 7)]

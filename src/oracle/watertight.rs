@@ -186,8 +186,8 @@ mod tests {
         let mesh = TriMesh::new(&vertices, &triangles).unwrap();
         let holed = TriMesh::new(&vertices, &triangles[1..]).unwrap();
         let scenes = vec![Scene::build(&holed, &BuildOptions::default()).unwrap()];
-        let leaks = Watertight { mesh, scenes }.check(1, 1000);
-        assert!(leaks.inside > 500 && leaks.outside > 100, "{leaks:?}");
+        let leaks = Watertight { mesh, scenes }.check(1, 8000);
+        assert!(leaks.inside > 4000 && leaks.outside > 500, "{leaks:?}");
         assert!(leaks.escapes > 10 && leaks.miscounts > leaks.escapes, "{leaks:?}");
         let text = leaks.first.unwrap().to_string();
         assert!(text.contains("from inside") || text.contains("`all`"), "{text}");

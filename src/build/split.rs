@@ -316,11 +316,13 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
         };
         for (lane, item) in view.items.iter().enumerate() {
             let b = view.clipped(item);
+            // What only rounding has let overlap the voxel may lie beside it.
+            let (lo, hi) = (b.lo.min(b.hi), b.lo.max(b.hi));
             for axis in 0..3 {
                 let local =
                     |x: f32, margin: f64| ((f64::from(x) + margin - grid.lo[axis]) / grid.cell) as f32;
-                group.planes[0][axis][lane] = local(b.lo[axis], -self.margin).next_down();
-                group.planes[1][axis][lane] = local(b.hi[axis], self.margin).next_up();
+                group.planes[0][axis][lane] = local(lo[axis], -self.margin).next_down();
+                group.planes[1][axis][lane] = local(hi[axis], self.margin).next_up();
             }
             group.clusters[lane] = Reference::new(item.cluster, last);
         }

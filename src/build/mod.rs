@@ -49,13 +49,14 @@ fn finish<P: Policy>(
     options: &BuildOptions,
 ) -> Result<Arena, BuildError> {
     // Divided voxels pay only down to where the margin is a small part of them.
-    let (margin, least_side, most_levels) = match policy.form() {
-        Form::Lists { .. } => (LIST_MARGIN, 1.0 / f64::from(1u32 << 22), LIST_LEVELS),
-        Form::Bricks => (BRICK_MARGIN, 1.0 / f64::from(1u32 << 14), BRICK_LEVELS),
+    // References are as many bytes at most in either form: 4 each, or 28 with their boxes.
+    let (margin, least_side, most_levels, references) = match policy.form() {
+        Form::Lists { .. } => (LIST_MARGIN, 1.0 / f64::from(1u32 << 22), LIST_LEVELS, 64),
+        Form::Bricks => (BRICK_MARGIN, 1.0 / f64::from(1u32 << 14), BRICK_LEVELS, 8),
     };
     let limits = split::Limits {
         memory: options.memory_limit,
-        references: (1 << 16) + 64 * analysis.triangles.len(),
+        references: (1 << 16) + references * analysis.triangles.len(),
         margin,
         least_side,
         levels: levels.min(most_levels),

@@ -250,16 +250,20 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
         self.arena.form == Form::Bricks || voxel.extents().any(|extent| f64::from(extent) < most)
     }
 
-    /// Whether division spares a ray through the voxel some triangle tests, given that it meets a part
-    /// with a chance of 1 / N^2 (the ratio of the areas).
+    /// Whether division spares a ray through the voxel some tests, given that it meets a part with a
+    /// chance of 1 / N^2 (the ratio of the areas).
     ///
-    /// Without this, a threshold below the number of triangles around a vertex would never be met there.
+    /// Without this, a threshold below the number of triangles around a vertex would never be met there,
+    /// and a cost model would look into parts of parts where nothing can be told apart.
     fn gains(&self, whole: Range<usize>, parts: Range<usize>) -> bool {
+        let n = self.arena.form.divisions() as usize;
+        if self.arena.form == Form::Bricks {
+            return parts.len() < n * n * whole.len();
+        }
         let triangles =
-            |r: Range<usize>| self.items[r].iter().map(|i| u64::from(i.mask.count_ones())).sum::<u64>();
-        let n = u64::from(self.arena.form.divisions());
+            |r: Range<usize>| self.items[r].iter().map(|i| i.mask.count_ones() as usize).sum::<usize>();
         // About 3 N / 2 steps lead through the parts, each as dear as a test.
-        self.arena.form == Form::Bricks || triangles(parts) + n * n * (3 * n / 2) < n * n * triangles(whole)
+        triangles(parts) + n * n * (3 * n / 2) < n * n * triangles(whole)
     }
 
     /// Makes room for the parts of a divided voxel: its word, and the index of the first part's.

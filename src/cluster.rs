@@ -7,7 +7,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use crate::aabb::Aabb;
-use crate::lanes::{Isa, Lanes, WIDTH, dispatch};
+use crate::lanes::{Isa, Lanes, WIDTH, axes, dispatch};
 use crate::ray::Ray;
 use crate::triangle::{RayLanes, Scale, Vec3Lanes, candidates};
 
@@ -90,7 +90,15 @@ impl Cluster {
     /// All corners, for the kernels.
     #[inline(always)]
     pub(crate) fn lanes<L: Lanes>(&self, lanes: L) -> [Vec3Lanes<L>; 3] {
-        self.corners.each_ref().map(|corner| corner.each_ref().map(|axis| lanes.load(axis)))
+        axes(
+            #[inline(always)]
+            |corner| {
+                axes(
+                    #[inline(always)]
+                    |axis| lanes.load(&self.corners[corner][axis]),
+                )
+            },
+        )
     }
 
     /// The box around the triangles of the lanes in `mask`.

@@ -6,11 +6,11 @@
 use glam::Vec3;
 
 use crate::cluster::Cluster;
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, axes};
 use crate::query::EdgeRule;
 use crate::ray::Ray;
 use crate::triangle::{
-    Intersection, RayLanes, Scale, Vec3Lanes, candidates, cross, dot, intersect, minus, unfused,
+    Intersection, Once, RayLanes, Rounding, Scale, Twice, Vec3Lanes, candidates, cross, dot, intersect, minus,
 };
 
 /// A way to intersect a ray with triangles, for [`Scene::query_with`](crate::Scene::query_with).
@@ -110,12 +110,15 @@ impl Test for Plain {
 
     #[inline(always)]
     fn filter<L: Lanes>(lanes: L, ray: &RayLanes<L>, cluster: &Cluster) -> (u32, Vec3Lanes<L>) {
-        moeller_trumbore(lanes, ray, cluster.lanes(lanes), unfused::<L>)
+        moeller_trumbore::<Twice, L>(lanes, ray, cluster.lanes(lanes))
     }
 
     #[inline(always)]
     fn decide<L: Lanes>(lanes: L, found: &Vec3Lanes<L>, subject: &Subject<'_>) -> Option<Intersection> {
-        let [t, u, v] = found.map(|x| lanes.store(x)[subject.lane]);
+        let [t, u, v] = axes(
+            #[inline(always)]
+            |i| lanes.store(found[i])[subject.lane],
+        );
         Some(Intersection { t: Scale::of(subject.ray.dir).unscaled(t), u, v })
     }
 }
@@ -125,7 +128,7 @@ impl Test for Fused {
 
     #[inline(always)]
     fn filter<L: Lanes>(lanes: L, ray: &RayLanes<L>, cluster: &Cluster) -> (u32, Vec3Lanes<L>) {
-        moeller_trumbore(lanes, ray, cluster.lanes(lanes), |a, b, c| lanes.mul_add(a, b, c))
+        moeller_trumbore::<Once, L>(lanes, ray, cluster.lanes(lanes))
     }
 
     #[inline(always)]
@@ -136,18 +139,20 @@ impl Test for Fused {
 
 /// The lanes that are hit within the ray's interval, as bits, and t, u and v of all.
 #[inline(always)]
-fn moeller_trumbore<L: Lanes>(
+fn moeller_trumbore<R: Rounding, L: Lanes>(
     lanes: L,
     ray: &RayLanes<L>,
     [v0, v1, v2]: [Vec3Lanes<L>; 3],
-    mul_add: impl Fn(L::F32, L::F32, L::F32) -> L::F32,
 ) -> (u32, Vec3Lanes<L>) {
     let zero = lanes.splat(0.0);
-    let dot = |a, b| dot::<L>(a, b, &mul_add);
     let (s, e1, e2) = (minus::<L>(ray.origin, v0), minus::<L>(v1, v0), minus::<L>(v2, v0));
-    let (p, q) = (cross::<L>(e2, ray.dir, &mul_add), cross::<L>(e1, s, &mul_add));
-    let inverse = lanes.splat(1.0) / dot(e1, p);
-    let [t, u, v] = [dot(e2, q), dot(s, p), dot(ray.dir, q)].map(|x| x * inverse);
+    let (p, q) = (cross::<R, L>(lanes, e2, ray.dir), cross::<R, L>(lanes, e1, s));
+    let inverse = lanes.splat(1.0) / dot::<R, L>(lanes, e1, p);
+    let [t, u, v] = [
+        dot::<R, L>(lanes, e2, q) * inverse,
+        dot::<R, L>(lanes, s, p) * inverse,
+        dot::<R, L>(lanes, ray.dir, q) * inverse,
+    ];
     // Written so that NaN, which stems from a determinant of zero, fails.
     let inside = lanes.at_most(zero, u) & lanes.at_most(zero, v) & lanes.at_most(u + v, lanes.splat(1.0));
     let within = lanes.less(ray.t_min, t) & lanes.at_most(t, ray.t_max);

@@ -64,6 +64,16 @@ pub(crate) trait Lanes: Copy {
     fn select_above4(self, below: Self::F64, a: Self::F64, b: Self::F64) -> (Self::F64, u32);
 }
 
+/// The values for the three axes.
+///
+/// Lanes must stay in registers and below the dispatch. The functions of arrays are inlined only where
+/// the compiler likes to, and so are closures without the attribute: where it does not, each operation
+/// on lanes becomes a call.
+#[inline(always)]
+pub(crate) fn axes<T>(f: impl Fn(usize) -> T) -> [T; 3] {
+    [f(0), f(1), f(2)]
+}
+
 /// Lanes of an instruction set that was found at run time.
 #[derive(Clone, Copy)]
 pub(crate) struct Dispatched<S>(pub(crate) S);

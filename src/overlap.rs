@@ -5,8 +5,8 @@
 //! comparison is widened by the bound of its rounding error, so that "no overlap" is certain.
 
 use crate::aabb::Aabb;
-use crate::lanes::Lanes;
-use crate::triangle::{Vec3Lanes, cross, dot, minus, unfused};
+use crate::lanes::{Lanes, axes};
+use crate::triangle::{Twice, Vec3Lanes, cross, dot, minus, splat};
 
 /// The lanes whose triangle may overlap `bounds`, as bits.
 ///
@@ -19,9 +19,8 @@ pub(crate) fn overlapping<L: Lanes>(lanes: L, corners: [Vec3Lanes<L>; 3], bounds
     let middle = bounds.center();
     // Covers the rounding of the middle and of what is multiplied with it.
     let half = (bounds.hi - middle).max(middle - bounds.lo) * (1.0 + 4.0 * f32::EPSILON);
-    let splat = |v: glam::Vec3| v.to_array().map(|x| lanes.splat(x));
-    let (m, half) = (splat(middle), splat(half));
-    let v = corners.map(|c| minus::<L>(c, m));
+    let (m, half) = (splat(lanes, middle), splat(lanes, half));
+    let v = [minus::<L>(corners[0], m), minus::<L>(corners[1], m), minus::<L>(corners[2], m)];
     let [c0, c1, c2] = corners;
     let edges = [minus::<L>(c1, c0), minus::<L>(c2, c1), minus::<L>(c0, c2)];
     let a = largest(lanes, &v);
@@ -34,19 +33,26 @@ pub(crate) fn overlapping<L: Lanes>(lanes: L, corners: [Vec3Lanes<L>; 3], bounds
 
     let mut apart = lanes.less(lanes.splat(1.0), lanes.splat(0.0));
     for axis in 0..3 {
-        let coordinates = v.map(|c| c[axis]);
+        let coordinates = [v[0][axis], v[1][axis], v[2][axis]];
         apart = apart | separated(lanes, &coordinates, half[axis] + eps_a);
         let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
         for edge in &edges {
             // The axis' unit vector x edge has the components -edge[k] and edge[j].
-            let coordinates = v.map(|c| c[k] * edge[j] - c[j] * edge[k]);
+            let coordinates = axes(
+                #[inline(always)]
+                |corner| v[corner][k] * edge[j] - v[corner][j] * edge[k],
+            );
             let reach = half[j] * lanes.abs(edge[k]) + half[k] * lanes.abs(edge[j]);
             apart = apart | separated(lanes, &coordinates, reach + eps_ae);
         }
     }
-    let normal = cross::<L>(edges[0], edges[1], unfused::<L>);
-    let reach = dot::<L>(half, normal.map(|n| lanes.abs(n)), unfused::<L>);
-    apart = apart | lanes.less(reach + eps_aee, lanes.abs(dot::<L>(normal, v[0], unfused::<L>)));
+    let normal = cross::<Twice, L>(lanes, edges[0], edges[1]);
+    let size = axes(
+        #[inline(always)]
+        |axis| lanes.abs(normal[axis]),
+    );
+    let reach = dot::<Twice, L>(lanes, half, size);
+    apart = apart | lanes.less(reach + eps_aee, lanes.abs(dot::<Twice, L>(lanes, normal, v[0])));
     !lanes.bits(apart) & 0xff
 }
 

@@ -165,8 +165,8 @@ impl<L: Lanes> RayLanes<L> {
     #[inline(always)]
     pub(crate) fn splat(lanes: L, ray: &Ray, scale: Scale) -> Self {
         Self {
-            origin: ray.origin.to_array().map(|x| lanes.splat(x)),
-            dir: scale.direction(ray.dir).to_array().map(|x| lanes.splat(x)),
+            origin: splat(lanes, ray.origin),
+            dir: splat(lanes, scale.direction(ray.dir)),
             t_min: lanes.splat(scale.time_below(ray.t_min)),
             t_max: lanes.splat(scale.time(ray.t_max)),
         }
@@ -204,7 +204,7 @@ impl RayPacket {
     /// ```
     pub fn candidates(&self, isa: Isa, corners: [Vec3; 3]) -> u8 {
         dispatch!(isa, lanes => {
-            let corners = corners.map(|corner| corner.to_array().map(|x| lanes.splat(x)));
+            let corners = [splat(lanes, corners[0]), splat(lanes, corners[1]), splat(lanes, corners[2])];
             candidates(lanes, &RayLanes::gather(lanes, self), corners) as u8
         })
     }
@@ -262,10 +262,10 @@ impl Scale {
 #[inline(always)]
 pub(crate) fn candidates<L: Lanes>(lanes: L, ray: &RayLanes<L>, [v0, v1, v2]: [Vec3Lanes<L>; 3]) -> u32 {
     let size = |[x, y, z]: Vec3Lanes<L>| lanes.max(lanes.max(lanes.abs(x), lanes.abs(y)), lanes.abs(z));
-    let fused = |a, b, c| lanes.mul_add(a, b, c);
     let (s, e1, e2) = (minus::<L>(ray.origin, v0), minus::<L>(v1, v0), minus::<L>(v2, v0));
-    let (p, q) = (cross::<L>(e2, ray.dir, fused), cross::<L>(e1, s, fused));
-    let (det, w1, w2) = (dot::<L>(e1, p, fused), dot::<L>(s, p, fused), dot::<L>(ray.dir, q, fused));
+    let (p, q) = (cross::<Once, L>(lanes, e2, ray.dir), cross::<Once, L>(lanes, e1, s));
+    let (det, w1, w2) =
+        (dot::<Once, L>(lanes, e1, p), dot::<Once, L>(lanes, s, p), dot::<Once, L>(lanes, ray.dir, q));
     let zero = lanes.splat(0.0);
     let abs = lanes.abs(det);
     let sign = lanes.sign(det);
@@ -277,7 +277,7 @@ pub(crate) fn candidates<L: Lanes>(lanes: L, ray: &RayLanes<L>, [v0, v1, v2]: [V
     let slack = eps * (e16 * (a + e));
     let outside =
         lanes.less(w1 + slack, zero) | lanes.less(w2 + slack, zero) | lanes.less(abs + slack, w1 + w2);
-    let numerator = sign * dot::<L>(e2, q, fused);
+    let numerator = sign * dot::<Once, L>(lanes, e2, q);
     let slack = |t: L::F32| eps * (e16 * (e * (a + lanes.abs(t)) + lanes.splat(2f32.powi(-80))));
     let beyond = lanes.less(ray.t_max * abs + slack(ray.t_max), numerator)
         | lanes.less(numerator + slack(ray.t_min), ray.t_min * abs);
@@ -285,38 +285,53 @@ pub(crate) fn candidates<L: Lanes>(lanes: L, ray: &RayLanes<L>, [v0, v1, v2]: [V
     !lanes.bits(outside | (beyond & certain)) & 0xff
 }
 
+/// A vector in all lanes.
+#[inline(always)]
+pub(crate) fn splat<L: Lanes>(lanes: L, v: Vec3) -> Vec3Lanes<L> {
+    [lanes.splat(v.x), lanes.splat(v.y), lanes.splat(v.z)]
+}
+
 #[inline(always)]
 pub(crate) fn minus<L: Lanes>(a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> Vec3Lanes<L> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// `mul_add` computes a * b + c, rounded once or twice.
-#[inline(always)]
-pub(crate) fn cross<L: Lanes>(
-    a: Vec3Lanes<L>,
-    b: Vec3Lanes<L>,
-    mul_add: impl Fn(L::F32, L::F32, L::F32) -> L::F32,
-) -> Vec3Lanes<L> {
-    std::array::from_fn(|i| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        mul_add(a[j], b[k], -(a[k] * b[j]))
-    })
+/// How often a * b + c is rounded.
+pub(crate) trait Rounding {
+    fn mul_add<L: Lanes>(lanes: L, a: L::F32, b: L::F32, c: L::F32) -> L::F32;
 }
 
-/// As [`cross`].
-#[inline(always)]
-pub(crate) fn dot<L: Lanes>(
-    a: Vec3Lanes<L>,
-    b: Vec3Lanes<L>,
-    mul_add: impl Fn(L::F32, L::F32, L::F32) -> L::F32,
-) -> L::F32 {
-    mul_add(a[2], b[2], mul_add(a[1], b[1], a[0] * b[0]))
+/// Once, where the instruction set can do it.
+pub(crate) struct Once;
+/// Twice, on every processor.
+pub(crate) struct Twice;
+
+impl Rounding for Once {
+    #[inline(always)]
+    fn mul_add<L: Lanes>(lanes: L, a: L::F32, b: L::F32, c: L::F32) -> L::F32 {
+        lanes.mul_add(a, b, c)
+    }
 }
 
-/// a * b + c, both operations rounded.
+impl Rounding for Twice {
+    #[inline(always)]
+    fn mul_add<L: Lanes>(_: L, a: L::F32, b: L::F32, c: L::F32) -> L::F32 {
+        a * b + c
+    }
+}
+
 #[inline(always)]
-pub(crate) fn unfused<L: Lanes>(a: L::F32, b: L::F32, c: L::F32) -> L::F32 {
-    a * b + c
+pub(crate) fn cross<R: Rounding, L: Lanes>(lanes: L, a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> Vec3Lanes<L> {
+    [
+        R::mul_add(lanes, a[1], b[2], -(a[2] * b[1])),
+        R::mul_add(lanes, a[2], b[0], -(a[0] * b[2])),
+        R::mul_add(lanes, a[0], b[1], -(a[1] * b[0])),
+    ]
+}
+
+#[inline(always)]
+pub(crate) fn dot<R: Rounding, L: Lanes>(lanes: L, a: Vec3Lanes<L>, b: Vec3Lanes<L>) -> L::F32 {
+    R::mul_add(lanes, a[2], b[2], R::mul_add(lanes, a[1], b[1], a[0] * b[0]))
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ use super::Visit;
 use super::brick::{BrickPath, mirror, mirror_index};
 use crate::arena::{Arena, BRICK_LEVELS, BoxGroup, Voxel};
 use crate::dda::{Dda, Path, signed_strides};
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, axes};
 use crate::triangle::Vec3Lanes;
 
 #[inline(always)]
@@ -78,14 +78,20 @@ impl<'a, L: Lanes, V: Visit> Bricks<'a, L, V> {
     #[inline(always)]
     fn new(lanes: L, arena: &'a Arena, path: &'a Path, visit: &'a mut V) -> Self {
         let mirrored = |axis: usize| path.octant >> axis & 1 != 0;
-        let origin = std::array::from_fn(|axis| {
-            let p = path.origin[axis];
-            lanes.splat(if mirrored(axis) { f64::from(arena.grid.dims[axis]) - p } else { p } as f32)
-        });
-        let slope = std::array::from_fn(|axis| {
-            let w = path.width[axis] as f32;
-            lanes.splat(if mirrored(axis) { -w } else { w })
-        });
+        let origin = axes(
+            #[inline(always)]
+            |axis| {
+                let p = path.origin[axis];
+                lanes.splat(if mirrored(axis) { f64::from(arena.grid.dims[axis]) - p } else { p } as f32)
+            },
+        );
+        let slope = axes(
+            #[inline(always)]
+            |axis| {
+                let w = path.width[axis] as f32;
+                lanes.splat(if mirrored(axis) { -w } else { w })
+            },
+        );
         let mut bricks = Self { lanes, arena, path, visit, limit: 0.0, origin, slope };
         bricks.update_limit();
         bricks

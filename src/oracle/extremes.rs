@@ -79,7 +79,7 @@ pub fn crowd(seed: u64, even: usize, crowd: usize) -> Mesh {
 pub fn line(seed: u64) -> Mesh {
     let rng = &mut Rng::new(seed);
     let (start, dir) = (rng.in_cube(), rng.pick(&[DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE]));
-    let off = |i: usize| if i % 2 == 0 { 0.0 } else { 1e-7 };
+    let off = |i: usize| if i.is_multiple_of(2) { 0.0 } else { 1e-7 };
     soup(
         (0..60)
             .map(|i| [(); 3].map(|()| (start + rng.signed() * dir + off(i) * rng.in_cube()).as_vec3()))

@@ -183,7 +183,7 @@ fn grazing(source: &mut Source<'_>) -> Ray {
     let target = source.within(corners);
     let normal = (b - a).cross(c - a).normalize_or(DVec3::Y);
     let along = normal.any_orthonormal_vector().rotate_axis(normal, source.rng.range(0.0, TAU));
-    let angle = source.rng.pick(&[1e-2, 1e-3, 1e-5, 1e-7, 1e-12]);
+    let angle = source.rng.pick(&[1e-2, 1e-3, 1e-4, 1e-5, 1e-7]);
     let distance = (b - a).length().max((c - a).length()) * source.rng.pick(&[0.5, 1.0, 10.0]);
     towards(target - distance * (along + angle * normal), target)
 }

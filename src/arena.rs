@@ -98,7 +98,7 @@ pub(crate) struct Brick {
 #[repr(C, align(32))]
 pub(crate) struct BoxGroup {
     /// Lower and upper corners by axis and lane, relative to the grid's lower corner, in cells of the
-    /// top grid. Lanes without a cluster hold an empty box.
+    /// top grid. Lanes without a cluster hold a box at infinity, which no path reaches.
     pub(crate) planes: [[[f32; WIDTH]; 3]; 2],
     /// The clusters. The first carries whether the group is the last of its leaf.
     pub(crate) clusters: [Reference; WIDTH],

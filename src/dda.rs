@@ -16,7 +16,8 @@
 
 use crate::arena::Grid;
 use crate::descent::first_exit;
-use crate::exact::{midpoint, two_product, two_sum};
+use crate::exact::{two_product, two_sum};
+use crate::lanes::axes;
 use crate::ray::Ray;
 
 /// The margin of the voxels of a structure that is walked in f64, relative to the size of the scene.
@@ -53,8 +54,42 @@ pub(crate) enum Clip {
 
 impl Path {
     /// Clips a valid ray to the grid.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn clip(ray: &Ray, grid: &Grid) -> Clip {
+        // Origins so near, in sizes of the grid, that rounding stays within what the grid is larger than
+        // the scene.
+        const NEAR: f64 = 256.0;
+        let steepest = f64::from(ray.dir.abs().max_element());
+        let speeds = axes(|axis| f64::from(ray.dir[axis]).abs().max(steepest * LEAST_SPEED));
+        let inverse = axes(|axis| 1.0 / speeds[axis]);
+        let octant = ray.octant();
+        let size = axes(|axis| f64::from(grid.dims[axis]) * grid.cell);
+        let position = axes(|axis| f64::from(ray.origin[axis]) - grid.lo[axis]);
+        let position = axes(|axis| mirror(octant, axis, position[axis], size[axis]));
+        if (0..3).any(|axis| position[axis].abs() > NEAR * size[axis]) {
+            return Self::clip_far(ray, grid);
+        }
+        let enter = axes(|axis| -position[axis] * inverse[axis]);
+        let leave = axes(|axis| (size[axis] - position[axis]) * inverse[axis]);
+        let start = f64::from(ray.t_min).max(enter[0]).max(enter[1]).max(enter[2]);
+        if start > rounds_to(ray.t_max).min(leave[0]).min(leave[1]).min(leave[2]) {
+            return Clip::Miss;
+        }
+        let cells = 1.0 / grid.cell;
+        Clip::Path(Self {
+            origin: axes(|axis| (position[axis] + start * speeds[axis]) * cells),
+            width: axes(|axis| steepest * inverse[axis]),
+            octant,
+            start,
+            delay: 0.0,
+            speed: steepest * cells,
+        })
+    }
+
+    /// The same for an origin anywhere.
+    #[cold]
+    #[inline(never)]
+    fn clip_far(ray: &Ray, grid: &Grid) -> Clip {
         // Bounds the error of a quotient of differences, but for 2^-52 of the grid's width, by which the scene
         // is certainly inside.
         const SLACK: f64 = 1.0 / (1u64 << 51) as f64;
@@ -74,22 +109,21 @@ impl Path {
             enter = enter.max(near - SLACK * near.abs());
             leave = leave.min(far + SLACK * far.abs());
         }
-        if enter <= leave { Self::from(ray, grid, enter) } else { Clip::Miss }
+        if enter <= leave { Self::from_far(ray, grid, enter) } else { Clip::Miss }
     }
 
-    #[inline]
-    fn from(ray: &Ray, grid: &Grid, start: f64) -> Clip {
+    fn from_far(ray: &Ray, grid: &Grid, start: f64) -> Clip {
         /// Places in units S of the grid's size up to which their errors stay below 2^-38 S.
         const FAR: f64 = 4096.0;
         let octant = ray.octant();
         let steepest = f64::from(ray.dir.abs().max_element());
-        let least = steepest / (1u64 << 60) as f64;
+        let least = steepest * LEAST_SPEED;
         let mut path = Self {
-            origin: std::array::from_fn(|axis| {
+            origin: axes(|axis| {
                 let position = advance(ray, axis, start, grid.lo[axis]) / grid.cell;
-                if octant >> axis & 1 != 0 { f64::from(grid.dims[axis]) - position } else { position }
+                mirror(octant, axis, position, f64::from(grid.dims[axis]))
             }),
-            width: std::array::from_fn(|axis| steepest / f64::from(ray.dir[axis]).abs().max(least)),
+            width: axes(|axis| steepest / f64::from(ray.dir[axis]).abs().max(least)),
             octant,
             start,
             delay: 0.0,
@@ -99,7 +133,7 @@ impl Path {
         if far {
             return Clip::TooFar;
         }
-        // From far away, rounding puts the start before the grid.
+        // Rounding puts the start before the grid.
         path.delay = (0..3).map(|axis| -path.origin[axis] * path.width[axis]).fold(0.0, f64::max);
         for axis in 0..3 {
             path.origin[axis] += path.delay / path.width[axis];
@@ -109,17 +143,56 @@ impl Path {
 
     /// The time of t, rounded up: no hit at `t` or before comes later.
     #[inline(always)]
-    pub(crate) fn time(&self, t: f64) -> f64 {
+    fn time(&self, t: f64) -> f64 {
         let slack = (t.abs() + self.start.abs()) * (2.0 * f64::EPSILON);
         (t - self.start + slack) * self.speed * (1.0 + 4.0 * f64::EPSILON) - self.delay
     }
 }
 
-/// The largest distance that rounds to `t` at most: hits count if their rounded distance does.
-#[inline(always)]
-pub(crate) fn rounds_to(t: f32) -> f64 {
-    midpoint(t, t.next_up())
+/// The time after which a walk finds nothing more: that of the query's `t_max`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limit {
+    t_max: f32,
+    /// No hit that rounds to `t_max` or less comes later.
+    pub(crate) time: f64,
 }
+
+impl Limit {
+    #[inline(always)]
+    pub(crate) fn new(path: &Path, t_max: f32) -> Self {
+        Self { t_max, time: path.time(rounds_to(t_max)) }
+    }
+
+    /// Follows `t_max`, and says whether it has changed.
+    #[inline(always)]
+    pub(crate) fn update(&mut self, path: &Path, t_max: f32) -> bool {
+        let changed = t_max != self.t_max;
+        if changed {
+            *self = Self::new(path, t_max);
+        }
+        changed
+    }
+}
+
+/// The least speed along an axis, relative to the largest.
+const LEAST_SPEED: f64 = 1.0 / (1u64 << 60) as f64;
+
+/// A position in a grid of a given size, seen from the corner where the octant's rays come from.
+#[inline(always)]
+fn mirror(octant: u32, axis: usize, position: f64, size: f64) -> f64 {
+    if octant >> axis & 1 != 0 { size - position } else { position }
+}
+
+/// No less than the largest distance that rounds to `t`: hits count if their rounded distance is within.
+#[inline(always)]
+fn rounds_to(t: f32) -> f64 {
+    let t = f64::from(t);
+    t + (t.abs() * HALF_ULP + LEAST)
+}
+
+/// Half a unit in the last place of an f32, relative to it, and half the least f32.
+const HALF_ULP: f64 = 1.0 / (1u64 << 24) as f64;
+const LEAST: f64 = 0.5 * f32::from_bits(1) as f64;
 
 /// origin - lo + t * dir along one axis, to 2^-53 of the result and 2^-105 of the origin's distance: in two
 /// terms, since for an origin far away the sum cancels.
@@ -144,24 +217,32 @@ pub(crate) struct Dda {
 
 impl Dda {
     /// The voxel of the grid in which the path starts.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(path: &Path, grid: &Grid) -> Self {
         let strides = grid.strides();
-        let mut dda = Self { exit: [0.0; 3], left: [0; 3], voxel: 0 };
-        for axis in 0..3 {
-            let last = grid.dims[axis] - 1;
-            let index = (path.origin[axis] as u32).min(last);
-            dda.exit[axis] = (f64::from(index + 1) - path.origin[axis]) * path.width[axis];
-            dda.left[axis] = last - index;
-            dda.voxel += strides[axis] * if path.octant >> axis & 1 != 0 { last - index } else { index };
-        }
-        dda
+        let index = axes(|axis| (path.origin[axis] as u32).min(grid.dims[axis] - 1));
+        let left = axes(|axis| grid.dims[axis] - 1 - index[axis]);
+        let offset =
+            axes(|axis| strides[axis] * if path.octant >> axis & 1 != 0 { left[axis] } else { index[axis] });
+        let exit = axes(|axis| (f64::from(index[axis] + 1) - path.origin[axis]) * path.width[axis]);
+        Self { exit, left, voxel: offset[0] + offset[1] + offset[2] }
     }
 
     /// The axis along which the path leaves first.
     #[inline(always)]
     pub(crate) fn axis(&self) -> usize {
         first_exit(&self.exit)
+    }
+
+    /// Steps to the next voxel; false where the block ends there, or the path leaves after `limit`.
+    #[inline(always)]
+    pub(crate) fn advance(&mut self, limit: f64, width: &[f64; 3], stride: &[i32; 3]) -> bool {
+        // Constant indices keep the state in registers.
+        match self.axis() {
+            0 => self.exit[0] <= limit && self.step(0, width, stride),
+            1 => self.exit[1] <= limit && self.step(1, width, stride),
+            _ => self.exit[2] <= limit && self.step(2, width, stride),
+        }
     }
 
     /// Steps to the next voxel along `axis`; false where the block ends there.

@@ -5,11 +5,9 @@ use std::ops::ControlFlow;
 use crate::arena::Arena;
 use crate::build::{self, BuildError, BuildOptions, Structure};
 use crate::cluster::Cluster;
-use crate::dda::rounds_to;
 use crate::descent::Walk;
 use crate::hit::Hit;
 use crate::kernel::{Double, Exact, Fused, Kernel, Plain, Test};
-use crate::lanes::dispatch;
 use crate::mesh::TriMesh;
 use crate::query::{All, Any, Closest, Query};
 use crate::ray::Ray;
@@ -120,8 +118,7 @@ impl Scene {
     }
 
     fn run<K: Test, Q: Query>(&self, ray: &Ray, query: &mut Q) {
-        let walk = self.walk();
-        dispatch!(self.options.isa, lanes => traverse::query::<K, _, _>(lanes, &self.arena, walk, ray, query));
+        traverse::query::<K, Q>(self.options.isa, &self.arena, self.walk(), ray, query);
     }
 
     /// Visits the clusters near a ray voxel by voxel, without testing them: for intersection tests of
@@ -143,10 +140,9 @@ impl Scene {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn clusters_along(&self, ray: &Ray, each: impl FnMut(&Cluster) -> ControlFlow<()>) {
-        let mut clusters = Each { arena: &self.arena, limit: rounds_to(ray.t_max), each };
+        let mut clusters = Each { arena: &self.arena, t_max: ray.t_max, each };
         if ray.is_valid() {
-            let walk = self.walk();
-            dispatch!(self.options.isa, lanes => traverse::visit(lanes, &self.arena, walk, ray, &mut clusters));
+            traverse::visit(self.options.isa, &self.arena, self.walk(), ray, &mut clusters);
         }
     }
 
@@ -184,7 +180,7 @@ impl Scene {
 /// Hands each cluster on.
 struct Each<'a, F> {
     arena: &'a Arena,
-    limit: f64,
+    t_max: f32,
     each: F,
 }
 
@@ -195,7 +191,7 @@ impl<F: FnMut(&Cluster) -> ControlFlow<()>> Visit for Each<'_, F> {
     }
 
     #[inline(always)]
-    fn limit(&self) -> f64 {
-        self.limit
+    fn t_max(&self) -> f32 {
+        self.t_max
     }
 }

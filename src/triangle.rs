@@ -46,14 +46,14 @@ pub struct Intersection {
 /// let through_a_corner = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -2.0]);
 /// assert_eq!(intersect(&through_a_corner, corners, EdgeRule::Closed).unwrap().t, 1.5);
 /// ```
-#[inline]
+#[inline(always)]
 pub fn intersect(ray: &Ray, corners: [Vec3; 3], rule: EdgeRule) -> Option<Intersection> {
-    match decide_rounded(ray, corners) {
+    let found = match decide_rounded(ray, corners) {
         Decision::Hit(at) => Some(at),
         Decision::Miss => None,
         Decision::Open => decide_exact(ray, corners, rule),
-    }
-    .filter(|at| at.t.is_finite())
+    };
+    found.filter(|at| at.t.is_finite())
 }
 
 enum Decision {
@@ -67,7 +67,7 @@ enum Decision {
 /// The bounds: let A, E1, E2, D be the largest absolute components of s, e1, e2, d. Their rounding and
 /// that of products and sums give det, w1, w2 and e2.q an error of less than 64 * 2^-53 times D E1 E2,
 /// A D E2, A D E1 and A E1 E2.
-#[inline]
+#[inline(always)]
 fn decide_rounded(ray: &Ray, corners: [Vec3; 3]) -> Decision {
     const EPS: f64 = 64.0 / (1u64 << 53) as f64;
     let [v0, v1, v2] = corners.map(Vec3::as_dvec3);
@@ -214,6 +214,8 @@ impl RayPacket {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scale {
     factor: f64,
+    /// Its inverse.
+    inverse: f64,
 }
 
 impl Scale {
@@ -221,7 +223,8 @@ impl Scale {
     #[inline(always)]
     pub(crate) fn of(dir: Vec3) -> Self {
         let exponent = (f64::from(dir.abs().max_element()).to_bits() >> 52) as i64 - 1022;
-        Self { factor: f64::from_bits(((1023 - exponent) as u64) << 52) }
+        let power = |exponent: i64| f64::from_bits(((1023 + exponent) as u64) << 52);
+        Self { factor: power(-exponent), inverse: power(exponent) }
     }
 
     /// The scaled direction.
@@ -230,16 +233,14 @@ impl Scale {
         (dir.as_dvec3() * self.factor).as_vec3()
     }
 
-    /// t in units of the scaled direction, rounded up; what is too large stays finite, as it was.
+    /// t in units of the scaled direction, or an ulp or two more; what is finite stays so.
     #[inline(always)]
     pub(crate) fn time(self, t: f32) -> f32 {
-        let exact = f64::from(t) / self.factor;
-        let rounded = exact as f32;
-        let scaled = if f64::from(rounded) < exact { rounded.next_up() } else { rounded };
-        if t.is_finite() { scaled.clamp(f32::MIN, f32::MAX) } else { t }
+        let above = above(f64::from(t) * self.inverse);
+        if t.is_finite() { above.clamp(f32::MIN, f32::MAX) } else { t }
     }
 
-    /// The same, rounded down.
+    /// The same, or an ulp or two less.
     #[inline(always)]
     fn time_below(self, t: f32) -> f32 {
         -self.time(-t)
@@ -250,6 +251,14 @@ impl Scale {
     pub(crate) fn unscaled(self, t: f32) -> f32 {
         (f64::from(t) * self.factor) as f32
     }
+}
+
+/// No less than `x`, and an ulp or two more at most.
+#[inline(always)]
+fn above(x: f64) -> f32 {
+    const ULP: f64 = f32::EPSILON as f64;
+    const LEAST: f64 = f32::from_bits(1) as f64;
+    (x + (x.abs() * ULP + LEAST)) as f32
 }
 
 /// The lanes in which the ray may meet the triangle within its interval, as bits.
@@ -266,22 +275,25 @@ pub(crate) fn candidates<L: Lanes>(lanes: L, ray: &RayLanes<L>, [v0, v1, v2]: [V
     let (p, q) = (cross::<Once, L>(lanes, e2, ray.dir), cross::<Once, L>(lanes, e1, s));
     let (det, w1, w2) =
         (dot::<Once, L>(lanes, e1, p), dot::<Once, L>(lanes, s, p), dot::<Once, L>(lanes, ray.dir, q));
-    let zero = lanes.splat(0.0);
     let abs = lanes.abs(det);
     let sign = lanes.sign(det);
-    let (w1, w2) = (sign * w1, sign * w2);
+    let (w1, w2, numerator) = (sign * w1, sign * w2, sign * dot::<Once, L>(lanes, e2, q));
     let a = size(s);
     let e = lanes.max(size(e1), size(e2)) + lanes.splat(2f32.powi(-40));
-    // 16 E (A + E) is above every intermediate value, so that it overflows first.
-    let (e16, eps) = (lanes.splat(16.0) * e, lanes.splat(2f32.powi(-21)));
-    let slack = eps * (e16 * (a + e));
-    let outside =
-        lanes.less(w1 + slack, zero) | lanes.less(w2 + slack, zero) | lanes.less(abs + slack, w1 + w2);
-    let numerator = sign * dot::<Once, L>(lanes, e2, q);
-    let slack = |t: L::F32| eps * (e16 * (e * (a + lanes.abs(t)) + lanes.splat(2f32.powi(-80))));
-    let beyond = lanes.less(ray.t_max * abs + slack(ray.t_max), numerator)
-        | lanes.less(numerator + slack(ray.t_min), ray.t_min * abs);
-    let certain = lanes.less(eps * (e16 * e), abs);
+    // 16 E (A + E) and 16 E E (A + |t|) are above every intermediate value, so that they overflow first.
+    let eps = lanes.splat(2f32.powi(-21));
+    let e16 = lanes.splat(16.0) * e;
+    let ee = e16 * e;
+    let det_slack = eps * ee;
+    let slack = lanes.mul_add(eps, e16 * a, det_slack);
+    let least = lanes.min(lanes.min(w1, w2), abs - (w1 + w2));
+    let outside = lanes.less(least + slack, lanes.splat(0.0));
+    let (eea, tiny) = (ee * a, lanes.splat(2f32.powi(-97)) * e);
+    let late = lanes.mul_add(eps, lanes.mul_add(ee, lanes.abs(ray.t_max), eea), tiny);
+    let early = lanes.mul_add(eps, lanes.mul_add(ee, lanes.abs(ray.t_min), eea), tiny);
+    let beyond = lanes.less(lanes.mul_add(ray.t_max, abs, late), numerator)
+        | lanes.less(numerator + early, ray.t_min * abs);
+    let certain = lanes.less(det_slack, abs);
     !lanes.bits(outside | (beyond & certain)) & 0xff
 }
 

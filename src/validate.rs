@@ -234,7 +234,7 @@ impl Check<'_> {
             require!(full > 0 && (last || full == WIDTH), "box group {index} has gaps");
             for lane in 0..WIDTH {
                 require!(group.clusters[lane].is_last() == last, "the end of box group {index}");
-                let empty = (0..3).all(|a| group.planes[0][a][lane] > group.planes[1][a][lane]);
+                let empty = (0..6).all(|i| group.planes[i / 3][i % 3][lane] == f32::INFINITY);
                 let ordered = (0..3).all(|a| group.planes[0][a][lane] <= group.planes[1][a][lane]);
                 require!(if lane < full { ordered } else { empty }, "box {lane} of group {index}");
                 if lane < full {

@@ -314,10 +314,8 @@ impl<L: Lanes, P: Policy> Splitter<'_, L, P> {
     fn group(&self, range: Range<usize>, bounds: &Aabb, last: bool) -> BoxGroup {
         let grid = &self.arena.grid;
         let view = VoxelView { items: &self.items[range], clusters: &self.arena.clusters, bounds: *bounds };
-        let mut group = BoxGroup {
-            planes: [[[f32::INFINITY; WIDTH]; 3], [[f32::NEG_INFINITY; WIDTH]; 3]],
-            clusters: [Reference::new(0, last); WIDTH],
-        };
+        let mut group =
+            BoxGroup { planes: [[[f32::INFINITY; WIDTH]; 3]; 2], clusters: [Reference::new(0, last); WIDTH] };
         for (lane, item) in view.items.iter().enumerate() {
             let b = view.clipped(item);
             // What only rounding has let overlap the voxel may lie beside it.

@@ -69,7 +69,7 @@ impl Subject {
             };
             for walk in [Walk::Special, Walk::General] {
                 let mut visited = Visited::new(&self.arena);
-                dispatch!(Isa::detect(), lanes => traverse::visit(lanes, &self.arena, walk, ray, &mut visited));
+                traverse::visit(Isa::detect(), &self.arena, walk, ray, &mut visited);
                 if visited.all {
                     continue;
                 }

@@ -170,7 +170,7 @@ impl Visit for Visited<'_> {
         ControlFlow::Continue(())
     }
 
-    fn limit(&self) -> f64 {
-        f64::INFINITY
+    fn t_max(&self) -> f32 {
+        f32::INFINITY
     }
 }

@@ -47,28 +47,40 @@ impl BrickPath {
     pub(crate) fn mask<L: Lanes>(&self, lanes: L, limit: f32) -> u64 {
         // The index along an axis that runs with the lane, and of one that runs with half the lanes.
         const FAST: [f32; WIDTH] = [0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0];
-        const SLOW: [f32; WIDTH] = [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
-        let (fast, slow) = (lanes.load(&FAST), lanes.load(&SLOW));
-        let intervals = |axis: usize, index: L::F32| {
-            let (enter, width, slack) = (self.enter[axis], self.width[axis], self.slack[axis]);
-            let start = lanes.splat(enter - slack) + index * lanes.splat(width);
-            let end = lanes.splat(enter + width + slack) + index * lanes.splat(width);
-            (lanes.max(start, lanes.splat(0.0)), lanes.min(end, lanes.splat(limit)))
-        };
-        let apart = |a: (L::F32, L::F32), b: (L::F32, L::F32)| {
-            lanes.bits(lanes.less(a.1, b.0) | lanes.less(b.1, a.0))
-        };
-        // Bit f + 4 s of a pair: the intervals f of the fast and s of the slow axis overlap.
-        let pair = |f: usize, s: usize| {
-            let a = intervals(f, fast);
-            let low = apart(a, intervals(s, slow));
-            let high = apart(a, intervals(s, slow + lanes.splat(2.0)));
-            u64::from(!(low | high << 8) & 0xffff)
-        };
-        let (xy, xz, yz) = (pair(0, 1), pair(0, 2), pair(1, 2));
+        const LOW: [f32; WIDTH] = [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
+        const HIGH: [f32; WIDTH] = [2.0, 2.0, 2.0, 2.0, 3.0, 3.0, 3.0, 3.0];
+        let (x, y) = (self.interval(lanes, 0, &FAST, limit), self.interval(lanes, 1, &FAST, limit));
+        let slow_y = [self.interval(lanes, 1, &LOW, limit), self.interval(lanes, 1, &HIGH, limit)];
+        let slow_z = [self.interval(lanes, 2, &LOW, limit), self.interval(lanes, 2, &HIGH, limit)];
+        let (xy, xz, yz) = (pair(lanes, x, slow_y), pair(lanes, x, slow_z), pair(lanes, y, slow_z));
         let (xz, yz) = (spread_nibbles(xz), spread_bits(spread_nibbles(yz)));
         xy.wrapping_mul(0x0001_0001_0001_0001) & xz.wrapping_mul(0x1111) & yz.wrapping_mul(0xf)
     }
+
+    /// When the path is between the planes of the voxels with these indices along an axis.
+    #[inline(always)]
+    fn interval<L: Lanes>(&self, lanes: L, axis: usize, index: &[f32; WIDTH], limit: f32) -> Interval<L> {
+        let (enter, width, slack) = (self.enter[axis], self.width[axis], self.slack[axis]);
+        let (index, splat) = (lanes.load(index), lanes.splat(width));
+        let start = lanes.mul_add(index, splat, lanes.splat(enter - slack));
+        let end = lanes.mul_add(index, splat, lanes.splat(enter + width + slack));
+        (lanes.max(start, lanes.splat(0.0)), lanes.min(end, lanes.splat(limit)))
+    }
+}
+
+/// Start and end.
+type Interval<L> = (<L as Lanes>::F32, <L as Lanes>::F32);
+
+/// Bit f + 4 s: the intervals f of one axis and s of the other overlap.
+#[inline(always)]
+fn pair<L: Lanes>(lanes: L, fast: Interval<L>, [low, high]: [Interval<L>; 2]) -> u64 {
+    u64::from(!(apart(lanes, fast, low) | apart(lanes, fast, high) << 8) & 0xffff)
+}
+
+/// The lanes in which two intervals do not overlap, as bits.
+#[inline(always)]
+fn apart<L: Lanes>(lanes: L, a: Interval<L>, b: Interval<L>) -> u32 {
+    lanes.bits(lanes.less(a.1, b.0) | lanes.less(b.1, a.0))
 }
 
 /// The four low nibbles to bits 0, 16, 32, 48.

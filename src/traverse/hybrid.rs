@@ -13,43 +13,46 @@
 
 use std::ops::ControlFlow;
 
-use super::Visit;
 use super::brick::{BrickPath, mirror, mirror_index};
+use super::{Visit, Walker};
 use crate::arena::{Arena, BRICK_LEVELS, BoxGroup, Voxel};
-use crate::dda::{Dda, Path, signed_strides};
+use crate::dda::{Dda, Limit, Path, signed_strides};
 use crate::lanes::{Lanes, axes};
 use crate::triangle::Vec3Lanes;
 
-#[inline(always)]
-pub(crate) fn walk<L: Lanes, V: Visit>(
-    lanes: L,
-    arena: &Arena,
-    path: &Path,
-    visit: &mut V,
-) -> ControlFlow<()> {
-    let strides = signed_strides(arena.grid.strides(), path.octant);
-    let mut dda = Dda::new(path, &arena.grid);
-    let mut bricks = Bricks::new(lanes, arena, path, visit);
-    loop {
-        bricks.visit.enter();
-        let word = &arena.words[dda.voxel as usize];
-        bricks.visit.read(word);
-        match word.get() {
-            Voxel::Empty => {}
-            Voxel::Leaf(first) => bricks.groups(first)?,
-            Voxel::Node(brick) => {
-                let times = BrickPath::new(
-                    std::array::from_fn(|axis| (dda.exit[axis] - path.width[axis]) as f32),
-                    path.width.map(|w| 0.25 * w as f32),
-                );
-                bricks.descend(brick, times)?;
+/// The walk.
+pub(crate) struct Hybrid;
+
+impl Walker for Hybrid {
+    #[inline(always)]
+    fn walk<L: Lanes, V: Visit>(lanes: L, arena: &Arena, path: &Path, visit: &mut V) -> ControlFlow<()> {
+        let strides = signed_strides(arena.grid.strides(), path.octant);
+        let mut dda = Dda::new(path, &arena.grid);
+        let mut cells = Cells::new(lanes, arena, path, visit);
+        loop {
+            cells.visit.enter();
+            let word = &arena.words[dda.voxel as usize];
+            cells.visit.read(word);
+            match word.get() {
+                Voxel::Empty => {}
+                Voxel::Leaf(first) => cells.groups(first)?,
+                Voxel::Node(brick) => {
+                    let enter = axes(|axis| (dda.exit[axis] - path.width[axis]) as f32);
+                    cells
+                        .descend(brick, BrickPath::new(enter, axes(|axis| 0.25 * path.width[axis] as f32)))?;
+                }
+            }
+            if !dda.advance(cells.limit.time, &path.width, &strides) {
+                return ControlFlow::Continue(());
             }
         }
-        let axis = dda.axis();
-        if dda.exit[axis] > f64::from(bricks.limit) || !dda.step(axis, &path.width, &strides) {
-            return ControlFlow::Continue(());
-        }
     }
+}
+
+/// The time of the limit, rounded up, and finite: boxes of no cluster are met at infinity.
+#[inline(always)]
+fn last(limit: Limit) -> f32 {
+    (limit.time as f32).next_up().min(f32::MAX)
 }
 
 /// A brick on the stack: its voxels that are still to be visited.
@@ -60,46 +63,45 @@ struct Frame {
     mask: u64,
 }
 
-/// What the walk needs below the top grid.
-struct Bricks<'a, L: Lanes, V> {
+/// What the walk needs within the cells of the top grid.
+struct Cells<'a, L: Lanes, V> {
     lanes: L,
     arena: &'a Arena,
     path: &'a Path,
     visit: &'a mut V,
-    /// No hit comes after this time.
-    limit: f32,
-    /// Where time is 0, relative to the grid's lower corner.
-    origin: Vec3Lanes<L>,
+    limit: Limit,
+    /// [`last`] of the limit.
+    last: f32,
     /// Time a cell, with the sign of the direction.
     slope: Vec3Lanes<L>,
+    /// Minus the time at which the path passes the grid's lower corner.
+    delay: Vec3Lanes<L>,
 }
 
-impl<'a, L: Lanes, V: Visit> Bricks<'a, L, V> {
+impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
     #[inline(always)]
     fn new(lanes: L, arena: &'a Arena, path: &'a Path, visit: &'a mut V) -> Self {
         let mirrored = |axis: usize| path.octant >> axis & 1 != 0;
-        let origin = axes(
+        let slope = axes(
+            #[inline(always)]
+            |axis| if mirrored(axis) { -path.width[axis] } else { path.width[axis] },
+        );
+        let delay = axes(
             #[inline(always)]
             |axis| {
                 let p = path.origin[axis];
-                lanes.splat(if mirrored(axis) { f64::from(arena.grid.dims[axis]) - p } else { p } as f32)
+                -slope[axis] * if mirrored(axis) { f64::from(arena.grid.dims[axis]) - p } else { p }
             },
         );
-        let slope = axes(
-            #[inline(always)]
-            |axis| {
-                let w = path.width[axis] as f32;
-                lanes.splat(if mirrored(axis) { -w } else { w })
-            },
-        );
-        let mut bricks = Self { lanes, arena, path, visit, limit: 0.0, origin, slope };
-        bricks.update_limit();
-        bricks
-    }
-
-    #[inline(always)]
-    fn update_limit(&mut self) {
-        self.limit = (self.path.time(self.visit.limit()) as f32).next_up();
+        let splat = |v: [f64; 3]| {
+            axes(
+                #[inline(always)]
+                |axis| lanes.splat(v[axis] as f32),
+            )
+        };
+        let limit = Limit::new(path, visit.t_max());
+        let (slope, delay) = (splat(slope), splat(delay));
+        Self { lanes, arena, path, visit, last: last(limit), limit, slope, delay }
     }
 
     /// Visits the occupied voxels of a brick that the path meets, front to back, and what is below.
@@ -120,7 +122,7 @@ impl<'a, L: Lanes, V: Visit> Bricks<'a, L, V> {
             let index = frame.mask.trailing_zeros();
             frame.mask &= frame.mask - 1;
             let times = frame.times.child(index);
-            if times.earliest() > self.limit {
+            if times.earliest() > self.last {
                 continue;
             }
             let brick = &self.arena.bricks[frame.brick as usize];
@@ -145,7 +147,7 @@ impl<'a, L: Lanes, V: Visit> Bricks<'a, L, V> {
         let brick = &self.arena.bricks[index as usize];
         self.visit.read(brick);
         let occupied = mirror(brick.occupied, self.path.octant);
-        Frame { brick: index, times, mask: occupied & times.mask(self.lanes, self.limit) }
+        Frame { brick: index, times, mask: occupied & times.mask(self.lanes, self.last) }
     }
 
     /// Tests the box groups of a leaf from `first` on, and the clusters whose boxes the path meets.
@@ -153,13 +155,17 @@ impl<'a, L: Lanes, V: Visit> Bricks<'a, L, V> {
     fn groups(&mut self, first: u32) -> ControlFlow<()> {
         for group in &self.arena.groups[first as usize..] {
             self.visit.read(group);
-            let mut met = self.boxes(group);
+            let (start, end) = self.boxes(group);
+            let mut met = self.overlapping(start, end);
             while met != 0 {
                 let lane = met.trailing_zeros() as usize;
                 met &= met - 1;
                 self.visit.cluster(group.clusters[lane].cluster())?;
+                if self.limit.update(self.path, self.visit.t_max()) {
+                    self.last = last(self.limit);
+                    met &= self.overlapping(start, self.lanes.splat(self.last));
+                }
             }
-            self.update_limit();
             if group.clusters[0].is_last() {
                 break;
             }
@@ -167,18 +173,24 @@ impl<'a, L: Lanes, V: Visit> Bricks<'a, L, V> {
         ControlFlow::Continue(())
     }
 
-    /// The boxes that the path meets up to the limit, as bits: the slabs of eight boxes at once.
+    /// When the path enters and leaves eight boxes, from time 0 to the limit.
     #[inline(always)]
-    fn boxes(&self, group: &BoxGroup) -> u32 {
+    fn boxes(&self, group: &BoxGroup) -> (L::F32, L::F32) {
         let lanes = self.lanes;
-        let (mut start, mut end) = (lanes.splat(0.0), lanes.splat(self.limit));
+        let (mut start, mut end) = (lanes.splat(0.0), lanes.splat(self.last));
         for axis in 0..3 {
-            let mirrored = (self.path.octant >> axis & 1) as usize;
-            let time =
-                |side: usize| (lanes.load(&group.planes[side][axis]) - self.origin[axis]) * self.slope[axis];
-            start = lanes.max(start, time(mirrored));
-            end = lanes.min(end, time(1 - mirrored));
+            let (lower, upper) = (lanes.load(&group.planes[0][axis]), lanes.load(&group.planes[1][axis]));
+            let a = lanes.mul_add(lower, self.slope[axis], self.delay[axis]);
+            let b = lanes.mul_add(upper, self.slope[axis], self.delay[axis]);
+            start = lanes.max(start, lanes.min(a, b));
+            end = lanes.min(end, lanes.max(a, b));
         }
-        !lanes.bits(lanes.less(end, start)) & 0xff
+        (start, end)
+    }
+
+    /// The lanes whose interval is not empty, as bits.
+    #[inline(always)]
+    fn overlapping(&self, start: L::F32, end: L::F32) -> u32 {
+        !self.lanes.bits(self.lanes.less(end, start)) & 0xff
     }
 }

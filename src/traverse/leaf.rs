@@ -5,7 +5,6 @@ use std::ops::ControlFlow;
 
 use super::Visit;
 use crate::arena::Arena;
-use crate::dda::rounds_to;
 use crate::hit::Hit;
 use crate::kernel::{Subject, Test};
 use crate::lanes::Lanes;
@@ -18,20 +17,19 @@ use crate::triangle::{RayLanes, Scale};
 /// A cluster that lies in several voxels is met again soon or not at all, so a few are enough
 /// (mailboxing: J. Amanatides and A. Woo, 1987).
 struct Mailbox {
-    recent: [u32; 8],
-    next: usize,
+    recent: [u32; 4],
 }
 
 impl Mailbox {
-    const EMPTY: Self = Self { recent: [u32::MAX; 8], next: 0 };
+    const EMPTY: Self = Self { recent: [u32::MAX; 4] };
 
     /// Whether the cluster is new; it no longer is afterwards.
     #[inline(always)]
     fn is_new(&mut self, cluster: u32) -> bool {
-        let known = self.recent.iter().fold(false, |known, &c| known | (c == cluster));
+        let [a, b, c, d] = self.recent;
+        let known = cluster == a || cluster == b || cluster == c || cluster == d;
         if !known {
-            self.recent[self.next % 8] = cluster;
-            self.next += 1;
+            self.recent = [cluster, a, b, c];
         }
         !known
     }
@@ -97,7 +95,7 @@ impl<L: Lanes, K: Test, Q: Query> Visit for LeafTest<'_, L, K, Q> {
     }
 
     #[inline(always)]
-    fn limit(&self) -> f64 {
-        rounds_to(self.query.t_max())
+    fn t_max(&self) -> f32 {
+        self.query.t_max()
     }
 }

@@ -16,10 +16,14 @@ use crate::arena::{Arena, Form};
 use crate::dda::{Clip, Path};
 use crate::descent::Walk;
 use crate::kernel::Test;
-use crate::lanes::Lanes;
+use crate::lanes::{Isa, Lanes, dispatch};
 use crate::query::Query;
 use crate::ray::Ray;
+use hybrid::Hybrid;
 use leaf::LeafTest;
+use octree::Octree;
+use recursive::Recursive;
+use uniform::Uniform;
 
 /// What is done with the voxels along a path, in their order.
 pub(crate) trait Visit {
@@ -32,8 +36,8 @@ pub(crate) trait Visit {
     /// The voxel holds a cluster. `Break` ends the walk.
     fn cluster(&mut self, index: u32) -> ControlFlow<()>;
 
-    /// No hit beyond this t is of use.
-    fn limit(&self) -> f64;
+    /// No hit beyond this t is of use (closed end). May only fall.
+    fn t_max(&self) -> f32;
 }
 
 /// Visits the clusters of a leaf of a list structure.
@@ -49,44 +53,63 @@ fn list<V: Visit>(arena: &Arena, first: u32, visit: &mut V) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
+/// A walk through one kind of structure.
+pub(crate) trait Walker {
+    /// Visits the voxels along a path. It ends by running out of voxels or by `Break`.
+    fn walk<L: Lanes, V: Visit>(lanes: L, arena: &Arena, path: &Path, visit: &mut V) -> ControlFlow<()>;
+}
+
+/// Runs `$body` with `$walker` as the [`Walker`] of an arena: each in a function of its own, which the
+/// compiler finds registers for.
+macro_rules! dispatch_walk {
+    ($arena:expr, $walk:expr, $walker:ident => $body:expr) => {
+        dispatch_walk!(@ $arena, $walk, $walker, $body,
+            (Form::Bricks, _) => Hybrid,
+            (Form::Lists { divisions: 2 }, Walk::Special) => Octree,
+            (Form::Lists { divisions: 1 }, _) => Uniform,
+            (Form::Lists { divisions: 2 }, Walk::General) => Recursive<2>,
+            (Form::Lists { divisions: 3 }, _) => Recursive<3>,
+            (Form::Lists { divisions: 4 }, _) => Recursive<4>,
+            (Form::Lists { divisions: 5 }, _) => Recursive<5>,
+            (Form::Lists { divisions: 6 }, _) => Recursive<6>,
+            (Form::Lists { divisions: 7 }, _) => Recursive<7>,
+            (Form::Lists { divisions: 8 }, _) => Recursive<8>
+        )
+    };
+    (@ $arena:expr, $walk:expr, $walker:ident, $body:expr, $($form:pat => $type:ty),*) => {
+        match ($arena.form, $walk) {
+            $($form => { type $walker = $type; $body })*
+            (Form::Lists { divisions }, _) => unreachable!("built with {divisions} divisions"),
+        }
+    };
+}
+
 /// Runs a query over a structure.
 #[inline(always)]
-pub(crate) fn query<K: Test, L: Lanes, Q: Query>(
-    lanes: L,
-    arena: &Arena,
-    walk: Walk,
-    ray: &Ray,
-    query: &mut Q,
-) {
-    if ray.is_valid() {
-        visit(lanes, arena, walk, ray, &mut LeafTest::<L, K, Q>::new(lanes, arena, ray, query));
-    }
+pub(crate) fn query<K: Test, Q: Query>(isa: Isa, arena: &Arena, walk: Walk, ray: &Ray, query: &mut Q) {
+    dispatch_walk!(arena, walk, W => dispatch!(isa, lanes => {
+        if ray.is_valid() {
+            along::<W, _, _>(lanes, arena, ray, &mut LeafTest::<_, K, Q>::new(lanes, arena, ray, query));
+        }
+    }));
 }
 
 /// Walks along a valid ray.
 #[inline(always)]
-pub(crate) fn visit<L: Lanes, V: Visit>(lanes: L, arena: &Arena, walk: Walk, ray: &Ray, visit: &mut V) {
-    let path = match Path::clip(ray, &arena.grid) {
-        Clip::Miss => return,
-        Clip::Path(path) => path,
-        Clip::TooFar => return every_cluster(arena, visit),
-    };
-    // The walks end by running out of voxels or by `Break`; neither is news.
-    let _ = match (arena.form, walk) {
-        (Form::Bricks, _) => hybrid::walk(lanes, arena, &path, visit),
-        (Form::Lists { divisions: 2 }, Walk::Special) => octree::walk(lanes, arena, &path, visit),
-        (Form::Lists { divisions }, _) => match divisions {
-            1 => uniform::walk(arena, &path, visit),
-            2 => recursive::walk::<2, _>(arena, &path, visit),
-            3 => recursive::walk::<3, _>(arena, &path, visit),
-            4 => recursive::walk::<4, _>(arena, &path, visit),
-            5 => recursive::walk::<5, _>(arena, &path, visit),
-            6 => recursive::walk::<6, _>(arena, &path, visit),
-            7 => recursive::walk::<7, _>(arena, &path, visit),
-            8 => recursive::walk::<8, _>(arena, &path, visit),
-            n => unreachable!("built with {n} divisions"),
-        },
-    };
+pub(crate) fn visit<V: Visit>(isa: Isa, arena: &Arena, walk: Walk, ray: &Ray, visit: &mut V) {
+    dispatch_walk!(arena, walk, W => dispatch!(isa, lanes => along::<W, _, _>(lanes, arena, ray, visit)));
+}
+
+#[inline(always)]
+fn along<W: Walker, L: Lanes, V: Visit>(lanes: L, arena: &Arena, ray: &Ray, visit: &mut V) {
+    match Path::clip(ray, &arena.grid) {
+        Clip::Miss => {}
+        Clip::Path(path) => {
+            // How the walk ended is no news.
+            let _ = W::walk(lanes, arena, &path, visit);
+        }
+        Clip::TooFar => every_cluster(arena, visit),
+    }
 }
 
 /// Visits all clusters, for a ray that no walk can follow.

@@ -5,9 +5,9 @@
 
 use std::ops::ControlFlow;
 
-use super::{Visit, list};
+use super::{Visit, Walker, list};
 use crate::arena::{Arena, LIST_LEVELS, Voxel};
-use crate::dda::Path;
+use crate::dda::{Limit, Path};
 use crate::descent::{Halves, first_exit};
 use crate::lanes::Lanes;
 
@@ -22,52 +22,52 @@ struct Level {
     first: u32,
 }
 
-#[inline(always)]
-pub(crate) fn walk<L: Lanes, V: Visit>(
-    lanes: L,
-    arena: &Arena,
-    path: &Path,
-    visit: &mut V,
-) -> ControlFlow<()> {
-    let rises = !path.octant & 7;
-    let exit = std::array::from_fn(|axis| (1.0 - path.origin[axis]) * path.width[axis]);
-    let mut levels = [Level { part: Halves::whole(exit, path.width), first: 0 }; LEVELS];
-    // The level at hand, and the deepest whose coefficients belong to the voxel at hand.
-    let (mut depth, mut valid) = (0, 0);
-    let mut time = 0.0;
-    let mut limit = path.time(visit.limit());
-    loop {
-        visit.enter();
-        let Level { part, first } = &levels[depth];
-        let word = &arena.words[(first + part.voxel) as usize];
-        visit.read(word);
-        match word.get() {
-            Voxel::Empty => {}
-            Voxel::Leaf(first) => {
-                list(arena, first, visit)?;
-                limit = path.time(visit.limit());
-            }
-            Voxel::Node(first) => {
-                if depth == valid {
-                    levels[depth + 1].part = levels[depth].part.descend_in(lanes, time, rises);
-                    valid += 1;
+/// The walk.
+pub(crate) struct Octree;
+
+impl Walker for Octree {
+    #[inline(always)]
+    fn walk<L: Lanes, V: Visit>(lanes: L, arena: &Arena, path: &Path, visit: &mut V) -> ControlFlow<()> {
+        let rises = !path.octant & 7;
+        let exit = std::array::from_fn(|axis| (1.0 - path.origin[axis]) * path.width[axis]);
+        let mut levels = [Level { part: Halves::whole(exit, path.width), first: 0 }; LEVELS];
+        // The level at hand, and the deepest whose coefficients belong to the voxel at hand.
+        let (mut depth, mut valid) = (0, 0);
+        let mut time = 0.0;
+        let mut limit = Limit::new(path, visit.t_max());
+        loop {
+            visit.enter();
+            let Level { part, first } = &levels[depth];
+            let word = &arena.words[(first + part.voxel) as usize];
+            visit.read(word);
+            match word.get() {
+                Voxel::Empty => {}
+                Voxel::Leaf(first) => {
+                    list(arena, first, visit)?;
+                    limit.update(path, visit.t_max());
                 }
-                depth += 1;
-                levels[depth].first = first;
-                continue;
+                Voxel::Node(first) => {
+                    if depth == valid {
+                        levels[depth + 1].part = levels[depth].part.descend_in(lanes, time, rises);
+                        valid += 1;
+                    }
+                    depth += 1;
+                    levels[depth].first = first;
+                    continue;
+                }
             }
-        }
-        let axis = first_exit(levels[depth].part.exit());
-        time = levels[depth].part.exit()[axis];
-        if time > limit {
-            return ControlFlow::Continue(());
-        }
-        valid = depth;
-        while depth > 0 && !levels[depth].part.step(axis, rises) {
-            depth -= 1;
-        }
-        if depth == 0 {
-            return ControlFlow::Continue(());
+            let axis = first_exit(levels[depth].part.exit());
+            time = levels[depth].part.exit()[axis];
+            if time > limit.time {
+                return ControlFlow::Continue(());
+            }
+            valid = depth;
+            while depth > 0 && !levels[depth].part.step(axis, rises) {
+                depth -= 1;
+            }
+            if depth == 0 {
+                return ControlFlow::Continue(());
+            }
         }
     }
 }

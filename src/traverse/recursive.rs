@@ -6,10 +6,11 @@
 
 use std::ops::ControlFlow;
 
-use super::{Visit, list};
+use super::{Visit, Walker, list};
 use crate::arena::{Arena, LIST_LEVELS, Voxel};
-use crate::dda::{Dda, Path, signed_strides};
+use crate::dda::{Dda, Limit, Path, signed_strides};
 use crate::descent::{General, first_exit};
+use crate::lanes::Lanes;
 
 const LEVELS: usize = LIST_LEVELS as usize;
 
@@ -21,53 +22,58 @@ struct Level<const N: u32> {
     first: u32,
 }
 
-#[inline(always)]
-pub(crate) fn walk<const N: u32, V: Visit>(arena: &Arena, path: &Path, visit: &mut V) -> ControlFlow<()> {
-    let strides = signed_strides(arena.grid.strides(), path.octant);
-    let rises = !path.octant & 7;
-    let mut top = Dda::new(path, &arena.grid);
-    let mut levels = [Level { part: General::<N>::whole(top.exit, path.width), first: 0 }; LEVELS];
-    // The number of levels below the top, and of those whose coefficients belong to the voxel at hand.
-    let (mut depth, mut valid) = (0, 0);
-    let mut time = 0.0;
-    let mut limit = path.time(visit.limit());
-    loop {
-        visit.enter();
-        let index =
-            if depth == 0 { top.voxel } else { levels[depth - 1].first + levels[depth - 1].part.voxel };
-        let word = &arena.words[index as usize];
-        visit.read(word);
-        match word.get() {
-            Voxel::Empty => {}
-            Voxel::Leaf(first) => {
-                list(arena, first, visit)?;
-                limit = path.time(visit.limit());
-            }
-            Voxel::Node(first) => {
-                if depth == valid {
-                    let whole = match depth {
-                        0 => General::whole(top.exit, path.width),
-                        _ => levels[depth - 1].part,
-                    };
-                    levels[depth].part = whole.descend(time, rises);
-                    valid += 1;
+/// The walk.
+pub(crate) struct Recursive<const N: u32>;
+
+impl<const N: u32> Walker for Recursive<N> {
+    #[inline(always)]
+    fn walk<L: Lanes, V: Visit>(_: L, arena: &Arena, path: &Path, visit: &mut V) -> ControlFlow<()> {
+        let strides = signed_strides(arena.grid.strides(), path.octant);
+        let rises = !path.octant & 7;
+        let mut top = Dda::new(path, &arena.grid);
+        let mut levels = [Level { part: General::<N>::whole(top.exit, path.width), first: 0 }; LEVELS];
+        // The number of levels below the top, and of those whose coefficients belong to the voxel at hand.
+        let (mut depth, mut valid) = (0, 0);
+        let mut time = 0.0;
+        let mut limit = Limit::new(path, visit.t_max());
+        loop {
+            visit.enter();
+            let index =
+                if depth == 0 { top.voxel } else { levels[depth - 1].first + levels[depth - 1].part.voxel };
+            let word = &arena.words[index as usize];
+            visit.read(word);
+            match word.get() {
+                Voxel::Empty => {}
+                Voxel::Leaf(first) => {
+                    list(arena, first, visit)?;
+                    limit.update(path, visit.t_max());
                 }
-                levels[depth].first = first;
-                depth += 1;
-                continue;
+                Voxel::Node(first) => {
+                    if depth == valid {
+                        let whole = match depth {
+                            0 => General::whole(top.exit, path.width),
+                            _ => levels[depth - 1].part,
+                        };
+                        levels[depth].part = whole.descend(time, rises);
+                        valid += 1;
+                    }
+                    levels[depth].first = first;
+                    depth += 1;
+                    continue;
+                }
             }
-        }
-        let axis = if depth == 0 { top.axis() } else { first_exit(&levels[depth - 1].part.exit) };
-        time = if depth == 0 { top.exit[axis] } else { levels[depth - 1].part.exit[axis] };
-        if time > limit {
-            return ControlFlow::Continue(());
-        }
-        valid = depth;
-        while depth > 0 && !levels[depth - 1].part.step(axis, rises) {
-            depth -= 1;
-        }
-        if depth == 0 && !top.step(axis, &path.width, &strides) {
-            return ControlFlow::Continue(());
+            let axis = if depth == 0 { top.axis() } else { first_exit(&levels[depth - 1].part.exit) };
+            time = if depth == 0 { top.exit[axis] } else { levels[depth - 1].part.exit[axis] };
+            if time > limit.time {
+                return ControlFlow::Continue(());
+            }
+            valid = depth;
+            while depth > 0 && !levels[depth - 1].part.step(axis, rises) {
+                depth -= 1;
+            }
+            if depth == 0 && !top.step(axis, &path.width, &strides) {
+                return ControlFlow::Continue(());
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::arena::{Arena, Form, Voxel, VoxelWord};
+use crate::arena::{Arena, BRICK_LEVELS, Form, Grid, LIST_LEVELS, Voxel, VoxelWord};
 use crate::cluster::Cluster;
 use crate::lanes::WIDTH;
 
@@ -75,7 +75,7 @@ impl fmt::Display for Statistics {
 
 /// An invariant that does not hold.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Violation(String);
+pub struct Violation(pub(crate) String);
 
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -95,9 +95,14 @@ macro_rules! require {
 
 /// Proves that:
 /// - every triangle of the mesh is in at most one cluster, and lanes without one repeat the first;
+/// - corners and the grid are finite, and the grid has its words;
 /// - every word, reference, brick and box group is used by exactly one voxel, in bounds;
+/// - there are no more levels than the walks have room for;
 /// - every cluster is referred to, a leaf refers to a cluster once;
 /// - padding is zero, and boxes that hold no cluster are empty.
+///
+/// This is all that walks rely on to stay in bounds and to end, whoever made the arena. O(size of the
+/// arena), in memory too, whatever number of triangles is claimed.
 pub(crate) fn validate(arena: &Arena, triangles: usize) -> Result<Statistics, Violation> {
     let stored = clusters(arena, triangles)?;
     let mut check = Check {
@@ -115,38 +120,64 @@ pub(crate) fn validate(arena: &Arena, triangles: usize) -> Result<Statistics, Vi
         entries: vec![false; arena.references.len().max(arena.groups.len())],
         referred: vec![usize::MAX; arena.clusters.len()],
     };
-    require!(arena.grid.len() <= arena.words.len(), "the top grid exceeds the words");
-    require!(arena.grid.cell > 0.0 && arena.grid.cell.is_finite(), "the cell is {}", arena.grid.cell);
-    require!(arena.grid.padding == 0, "padding of the grid");
+    check_grid(arena)?;
     for voxel in 0..arena.grid.len() {
         check.voxel(voxel, 0)?;
     }
     check.all_used()
 }
 
+fn check_grid(arena: &Arena) -> Result<(), Violation> {
+    let Grid { lo, cell, dims, padding } = arena.grid;
+    let len = dims.iter().try_fold(1u32, |len, &n| len.checked_mul(n)).unwrap_or(0);
+    require!(len > 0 && len as usize <= arena.words.len(), "the top grid of {dims:?} exceeds the words");
+    require!(cell > 0.0 && cell.is_finite(), "the cell is {cell}");
+    require!(lo.iter().all(|x| x.is_finite()), "the lower corner is {lo:?}");
+    require!(padding == 0, "padding of the grid");
+    let foreign = match arena.form {
+        Form::Lists { .. } => arena.bricks.len() + arena.groups.len(),
+        Form::Bricks => arena.references.len(),
+    };
+    require!(foreign == 0, "{foreign} items of another form");
+    Ok(())
+}
+
 /// Returns the number of triangles.
 fn clusters(arena: &Arena, triangles: usize) -> Result<usize, Violation> {
-    let mut seen = vec![false; triangles];
+    let mut stored = Vec::new();
     for (i, cluster) in arena.clusters.iter().enumerate() {
         let occupied = cluster.occupied();
         require!(
             occupied & 1 != 0 && occupied.count_ones() == occupied.trailing_ones(),
             "gaps in cluster {i}"
         );
+        require!(
+            (0..WIDTH).all(|l| cluster.triangle(l).iter().all(|v| v.is_finite())),
+            "corners of cluster {i}"
+        );
         for (lane, &id) in cluster.ids().iter().enumerate() {
             if id == Cluster::NO_TRIANGLE {
                 require!(cluster.triangle(lane) == cluster.triangle(0), "lane {lane} of cluster {i}");
                 continue;
             }
-            let slot = seen.get_mut(id as usize);
-            require!(
-                slot.as_ref().is_some_and(|s| !**s),
-                "triangle {id} of cluster {i} is out of range or repeated"
-            );
-            slot.into_iter().for_each(|s| *s = true);
+            require!((id as usize) < triangles, "triangle {id} of cluster {i} is out of range");
+            stored.push(id);
         }
     }
-    Ok(seen.into_iter().filter(|&s| s).count())
+    let repeated = first_repeated(&mut stored, triangles);
+    require!(repeated.is_none(), "triangle {} is repeated", repeated.unwrap_or_default());
+    Ok(stored.len())
+}
+
+/// A number that occurs twice, of numbers below `end`.
+fn first_repeated(numbers: &mut [u32], end: usize) -> Option<u32> {
+    if end / 32 <= numbers.len() {
+        let mut seen = vec![false; end];
+        return numbers.iter().copied().find(|&i| std::mem::replace(&mut seen[i as usize], true));
+    }
+    // Slower, but with no flag for each of so many that are not there.
+    numbers.sort_unstable();
+    numbers.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0])
 }
 
 struct Check<'a> {
@@ -191,6 +222,11 @@ impl Check<'_> {
     }
 
     fn node(&mut self, first: usize, depth: usize) -> Result<(), Violation> {
+        let levels = match self.arena.form {
+            Form::Lists { .. } => LIST_LEVELS,
+            Form::Bricks => BRICK_LEVELS,
+        };
+        require!(depth <= levels as usize, "more than {levels} levels");
         let words = match self.arena.form {
             Form::Lists { divisions } => first..first + divisions.pow(3) as usize,
             Form::Bricks => {
@@ -204,7 +240,10 @@ impl Check<'_> {
                 start..start + brick.occupied.count_ones() as usize
             }
         };
-        require!(words.end <= self.arena.words.len(), "voxels {words:?} exceed the words");
+        require!(
+            words.end <= self.arena.words.len().min(u32::MAX as usize),
+            "voxels {words:?} exceed the words"
+        );
         for word in words {
             let empty = self.arena.words[word] == VoxelWord::EMPTY;
             require!(!(empty && self.arena.form == Form::Bricks), "an occupied voxel of a brick is empty");
@@ -234,8 +273,9 @@ impl Check<'_> {
             require!(full > 0 && (last || full == WIDTH), "box group {index} has gaps");
             for lane in 0..WIDTH {
                 require!(group.clusters[lane].is_last() == last, "the end of box group {index}");
-                let empty = (0..6).all(|i| group.planes[i / 3][i % 3][lane] == f32::INFINITY);
-                let ordered = (0..3).all(|a| group.planes[0][a][lane] <= group.planes[1][a][lane]);
+                let [lo, hi] = group.planes.map(|side| side.map(|axis| axis[lane]));
+                let empty = (lo, hi) == ([f32::INFINITY; 3], [f32::INFINITY; 3]);
+                let ordered = (0..3).all(|a| lo[a] <= hi[a]);
                 require!(if lane < full { ordered } else { empty }, "box {lane} of group {index}");
                 if lane < full {
                     self.refer(group.clusters[lane].cluster() as usize)?;

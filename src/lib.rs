@@ -9,6 +9,8 @@ mod cluster;
 mod dda;
 pub mod descent;
 mod exact;
+#[cfg(feature = "file")]
+mod file;
 mod hit;
 mod kernel;
 mod lanes;
@@ -33,6 +35,8 @@ pub use build::{
     BuildError, BuildOptions, HybridParams, OctreeParams, RecursiveParams, Structure, UniformParams,
 };
 pub use cluster::Cluster;
+#[cfg(feature = "file")]
+pub use file::{LoadError, MeshMismatch};
 pub use hit::Hit;
 pub use kernel::Kernel;
 pub use lanes::Isa;

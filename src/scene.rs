@@ -30,9 +30,9 @@ use crate::validate::{self, Statistics, Violation};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Scene {
-    arena: Arena,
-    options: BuildOptions,
-    triangles: usize,
+    pub(crate) arena: Arena,
+    pub(crate) options: BuildOptions,
+    pub(crate) triangles: usize,
 }
 
 /// How many hits [`Scene::all`] has written, and whether these are all.

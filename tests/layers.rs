@@ -10,7 +10,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("vocabulary", &["ray", "hit", "query", "mesh", "model"]),
     ("pieces", &["triangle", "cluster", "kernel", "overlap", "arena", "descent", "dda", "validate"]),
     ("phases", &["build", "traverse"]),
-    ("surface", &["scene", "stream"]),
+    ("surface", &["scene", "stream", "file"]),
     ("edges", &["builtin", "obj", "oracle"]),
 ];
 
@@ -29,6 +29,7 @@ const WITHIN: &[(&str, &str)] = &[
     ("validate", "arena"),
     ("validate", "cluster"),
     ("stream", "scene"),
+    ("file", "scene"),
     ("obj", "builtin"),
     ("oracle", "builtin"),
     ("oracle", "obj"),

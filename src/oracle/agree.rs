@@ -110,6 +110,16 @@ impl<'a> Subjects<'a> {
         &self.mesh
     }
 
+    /// The same scenes, saved and loaded.
+    ///
+    /// # Errors
+    /// A scene that can't be loaded.
+    #[cfg(feature = "file")]
+    pub fn reload(self) -> Result<Self, crate::LoadError> {
+        let subjects = self.subjects.into_iter().map(Subject::reload).collect::<Result<_, _>>()?;
+        Ok(Self { subjects, ..self })
+    }
+
     /// Compares.
     ///
     /// # Errors

@@ -59,6 +59,17 @@ impl<'a> Subject<'a> {
         }
     }
 
+    /// The same, saved and loaded.
+    #[cfg(feature = "file")]
+    pub(super) fn reload(self) -> Result<Self, crate::LoadError> {
+        let mut file = Vec::new();
+        self.scene.save(&mut file)?;
+        let mut scene = Scene::load(&file[..])?;
+        // What it is queried with is not of the file.
+        scene.options = self.scene.options;
+        Ok(Self { scene, name: format!("{}, loaded", self.name), ..self })
+    }
+
     /// Every query on one ray. The number of comparisons.
     pub(super) fn one_by_one(&self, ray: &Ray, answer: &Answer) -> Result<usize, Box<Disagreement>> {
         self.closest("closest", ray, answer, self.scene.closest(ray))?;

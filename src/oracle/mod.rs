@@ -8,6 +8,7 @@
 //! - [`rays`], [`meshes`] and [`extremes`]: seeded cases, the ordinary ones and the dangerous;
 //! - [`hazards`]: which of these have broken others, by name;
 //! - [`watertight`]: closed meshes, and rays that must not get out of them;
+//! - `forge`, with the feature `file`: saved scenes whose checksums hide what was done to them;
 //! - [`Agreement`]: builds structures and compares all their answers with both.
 
 mod agree;
@@ -19,6 +20,8 @@ mod disagreement;
 pub mod exact;
 pub mod extremes;
 mod filter;
+#[cfg(feature = "file")]
+pub mod forge;
 pub mod hazards;
 #[cfg(test)]
 mod lattice;

@@ -61,3 +61,8 @@ fn obj() {
 fn npy_trace() {
     replay("npy_trace", fuzz::npy_trace);
 }
+
+#[test]
+fn ogrid() {
+    replay("ogrid", fuzz::ogrid);
+}

@@ -6,6 +6,7 @@ mod case;
 mod closest;
 mod npy_trace;
 mod obj;
+mod ogrid;
 mod options;
 mod packet;
 
@@ -23,5 +24,6 @@ pub use case::Case;
 pub use closest::closest;
 pub use npy_trace::npy_trace;
 pub use obj::obj;
+pub use ogrid::ogrid;
 pub use options::Options;
 pub use packet::packet;

@@ -1,6 +1,8 @@
 //! The command as scripts see it: arguments in, exit code, output and files out.
 #![cfg(feature = "cli")]
 
+#[path = "cli/build.rs"]
+mod build;
 #[path = "cli/integrators.rs"]
 mod integrators;
 #[path = "cli/malformed.rs"]
@@ -26,6 +28,7 @@ fn help_is_as_documented() {
     assert_data_eq!(help(&["render", "--help"]), snapbox::file!["cli/help-render.txt"]);
     assert_data_eq!(help(&["trace", "--help"]), snapbox::file!["cli/help-trace.txt"]);
     assert_data_eq!(help(&["analyze", "--help"]), snapbox::file!["cli/help-analyze.txt"]);
+    assert_data_eq!(help(&["build", "--help"]), snapbox::file!["cli/help-build.txt"]);
     assert_data_eq!(help(&["scene", "--help"]), snapbox::file!["cli/help-scene.txt"]);
     assert_data_eq!(help(&["report", "--help"]), snapbox::file!["cli/help-report.txt"]);
     assert_data_eq!(help(&["report", "paper", "--help"]), snapbox::file!["cli/help-report-paper.txt"]);

@@ -45,6 +45,11 @@ pub(crate) struct BuildArgs {
 }
 
 impl BuildArgs {
+    /// Whether nothing is asked for.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.params.is_empty() && self.memory_limit.is_none()
+    }
+
     /// The options of the library.
     ///
     /// # Errors

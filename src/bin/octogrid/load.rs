@@ -7,6 +7,7 @@ use octogrid::builtin::{self, Camera};
 use octogrid::{BuildOptions, Model, Scene};
 
 use crate::failure::Failure;
+use crate::saved;
 
 /// A scene by its name.
 pub(crate) struct Loaded {
@@ -30,6 +31,10 @@ pub(crate) fn load(name: &str) -> Result<Loaded, Failure> {
     if !path.exists() {
         let names = names();
         return Err(Failure::at(path, format_args!("no such file, nor a built-in scene ({names})")));
+    }
+    if saved::is_named(path) {
+        let remedy = "give the scene that it was built from; render takes this file with --accel";
+        return Err(Failure::at(path, format_args!("holds a structure, no scene: {remedy}")));
     }
     let model = octogrid::obj::read_obj(path).map_err(|e| Failure::at(path, e))?;
     model.mesh().map_err(|e| Failure::at(path, e))?;

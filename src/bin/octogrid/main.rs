@@ -5,6 +5,7 @@
 mod analyze;
 mod answer;
 mod args;
+mod build;
 mod camera;
 mod failure;
 mod frame;
@@ -20,6 +21,7 @@ mod params;
 mod pool;
 mod render;
 mod report;
+mod saved;
 mod scene;
 mod shade;
 mod streams;
@@ -50,6 +52,7 @@ enum Command {
     Render(render::Args),
     Trace(trace::Args),
     Analyze(analyze::Args),
+    Build(build::Args),
     Scene(scene::Args),
     Report(report::Args),
 }
@@ -59,6 +62,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Trace(args) => trace::run(&args),
         Command::Analyze(args) => analyze::run(&args),
+        Command::Build(args) => build::run(&args),
         Command::Scene(args) => scene::run(&args),
         Command::Report(args) => report::run(&args),
     };

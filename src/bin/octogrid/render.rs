@@ -16,7 +16,7 @@ use crate::load::{self, Loaded};
 use crate::output::{Output, say};
 use crate::pool::ThreadArgs;
 use crate::shade::Shading;
-use crate::{heat, integrators, legend, npy, table, tone, viewpoint};
+use crate::{heat, integrators, legend, npy, saved, table, tone, viewpoint};
 
 /// Rays in flight at once, to keep memory and progress steady.
 const BAND: usize = 1 << 18;
@@ -37,6 +37,9 @@ pub(crate) struct Args {
     structure: Choice,
     #[command(flatten)]
     build: BuildArgs,
+    /// The structure of the scene from octogrid build, in place of building it
+    #[arg(long, value_name = "FILE.ogrid", conflicts_with_all = ["structure", "params", "memory_limit"])]
+    accel: Option<PathBuf>,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse_size)]
     size: [u32; 2],
@@ -92,12 +95,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let linear = args.linear.as_deref().map(Output::at).transpose()?;
     let loaded = load::load(&args.scene)?;
     let (picture, summary) = args.threads.run(|| {
-        let (scene, build_ms) = load::build(&loaded.model, &options)?;
+        let (scene, ready) = match &args.accel {
+            Some(path) => {
+                saved::load_for(path, &loaded.model).map(|(scene, ms)| (scene, ("load, ms", ms)))?
+            }
+            None => load::build(&loaded.model, &options).map(|(scene, ms)| (scene, ("build, ms", ms)))?,
+        };
         let camera = camera(args, &loaded, &scene)?;
         let shading = Shading::new(&loaded.model, &scene, up(args.up));
         let mut rates = Rates::default();
         let picture = picture(args, &camera, &shading, &scene, linear.as_ref(), &mut rates)?;
-        Ok((picture, summary(&loaded, &scene, build_ms, shading.lights(), &rates)))
+        Ok((picture, summary(&loaded, &scene, ready, shading.lights(), &rates)))
     })?;
     let mut png = std::io::Cursor::new(Vec::new());
     picture.write_to(&mut png, ImageFormat::Png).map_err(|e| Failure::at(&args.output, e))?;
@@ -192,7 +200,7 @@ fn depth(distances: &[f32]) -> Vec<[u8; 3]> {
 fn summary(
     loaded: &Loaded,
     scene: &Scene,
-    build_ms: f64,
+    (ready, ms): (&'static str, f64),
     lights: usize,
     rates: &Rates,
 ) -> impl std::fmt::Display + Send + use<> {
@@ -202,7 +210,7 @@ fn summary(
         ("triangles", scene.triangles().to_string()),
         ("lights", lights.to_string()),
         ("structure", scene.structure().to_string()),
-        ("build, ms", format!("{build_ms:.2}")),
+        (ready, format!("{ms:.2}")),
         ("bytes a triangle", format!("{:.1}", load::bytes_per_triangle(scene))),
         ("primary rays", rates.primary.rays().to_string()),
         ("primary, Mray/s", rate(&rates.primary)),

@@ -6,22 +6,21 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::ValueEnum;
-use octogrid::{Ray, Scene};
+use octogrid::{BuildOptions, Model, Ray, Scene};
 use serde::Serialize;
 
 use crate::answer::Answer;
 use crate::args::{BuildArgs, Choice};
 use crate::failure::Failure;
-use crate::load::{self, Loaded};
 use crate::npy;
 use crate::output::{Output, say};
 use crate::pool::ThreadArgs;
-use crate::table;
+use crate::{load, saved, table};
 
 /// Trace the rays of a NumPy file and write their hits
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// An OBJ file or the name of a built-in scene
+    /// An OBJ file, the name of a built-in scene, or a file of octogrid build
     scene: String,
     /// The rays: float32, shape (n, 8): ox oy oz t_min dx dy dz t_max
     #[arg(long, value_name = "FILE.npy")]
@@ -66,6 +65,9 @@ struct Report {
     triangles: usize,
     structure: &'static str,
     build_ms: f64,
+    /// Of a structure that was built before.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    load_ms: Option<f64>,
     bytes_per_triangle: f64,
     query: Question,
     rays: usize,
@@ -76,19 +78,46 @@ struct Report {
     mrays_per_s: f64,
 }
 
+/// A scene, and how long it took to have it.
+struct Ready {
+    scene: Scene,
+    build_ms: f64,
+    load_ms: Option<f64>,
+}
+
+impl Ready {
+    fn build(model: &Model, options: &BuildOptions) -> Result<Self, Failure> {
+        let (scene, build_ms) = load::build(model, options)?;
+        Ok(Self { scene, build_ms, load_ms: None })
+    }
+
+    fn load(path: &Path) -> Result<Self, Failure> {
+        let (scene, load_ms) = saved::load(path)?;
+        Ok(Self { scene, build_ms: 0.0, load_ms: Some(load_ms) })
+    }
+}
+
 /// Runs the command.
 ///
 /// # Errors
 /// On wrong parameters, on files that can't be read or written, and where the build fails.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let options = args.build.options(args.structure)?;
+    let is_built = saved::is_named(Path::new(&args.scene));
+    if is_built && !(args.structure == Choice::Auto && args.build.is_empty()) {
+        let why = "is built already: leave --structure, --params and --memory-limit to octogrid build";
+        return Err(Failure::Usage(format!("{} {why}", args.scene)));
+    }
     let output = Output::at(&args.hits)?;
-    let loaded = load::load(&args.scene)?;
+    let model = if is_built { None } else { Some(load::load(&args.scene)?.model) };
     let rays = read_rays(&args.rays)?;
     let (report, answer) = args.threads.run(|| {
-        let (scene, build_ms) = load::build(&loaded.model, &options)?;
-        let (answer, seconds) = ask(&scene, &rays, args.query, args.repeat);
-        Ok((report(&loaded, &scene, build_ms, args.query, rays.len(), &answer, &seconds), answer))
+        let ready = match &model {
+            Some(model) => Ready::build(model, &options)?,
+            None => Ready::load(Path::new(&args.scene))?,
+        };
+        let (answer, seconds) = ask(&ready.scene, &rays, args.query, args.repeat);
+        Ok((report(args, &ready, rays.len(), &answer, &seconds), answer))
     })?;
     output.write(|file| answer.write(file))?;
     if args.json {
@@ -124,23 +153,16 @@ fn ask(scene: &Scene, rays: &[Ray], question: Question, repeat: u32) -> (Answer,
     (answer, seconds)
 }
 
-fn report(
-    loaded: &Loaded,
-    scene: &Scene,
-    build_ms: f64,
-    query: Question,
-    rays: usize,
-    answer: &Answer,
-    seconds: &[f64],
-) -> Report {
+fn report(args: &Args, ready: &Ready, rays: usize, answer: &Answer, seconds: &[f64]) -> Report {
     let median_s = (seconds[(seconds.len() - 1) / 2] + seconds[seconds.len() / 2]) / 2.0;
     Report {
-        scene: loaded.name.clone(),
-        triangles: scene.triangles(),
-        structure: scene.structure().name(),
-        build_ms,
-        bytes_per_triangle: load::bytes_per_triangle(scene),
-        query,
+        scene: args.scene.clone(),
+        triangles: ready.scene.triangles(),
+        structure: ready.scene.structure().name(),
+        build_ms: ready.build_ms,
+        load_ms: ready.load_ms,
+        bytes_per_triangle: load::bytes_per_triangle(&ready.scene),
+        query: args.query,
         rays,
         hits: answer.hits(),
         threads: rayon::current_num_threads(),
@@ -155,7 +177,10 @@ fn summary(report: &Report) -> impl std::fmt::Display + use<> {
         ("scene", report.scene.clone()),
         ("triangles", report.triangles.to_string()),
         ("structure", report.structure.to_owned()),
-        ("build, ms", format!("{:.2}", report.build_ms)),
+        match report.load_ms {
+            Some(ms) => ("load, ms", format!("{ms:.2}")),
+            None => ("build, ms", format!("{:.2}", report.build_ms)),
+        },
         ("bytes a triangle", format!("{:.1}", report.bytes_per_triangle)),
         ("query", format!("{:?}", report.query).to_lowercase()),
         ("rays", report.rays.to_string()),

@@ -1,0 +1,99 @@
+//! octogrid, as its users call it.
+
+use octogrid::{BuildOptions, Hit, Ray, Scene, TriMesh};
+
+use crate::peer::{Answer, Build, Peer, Tracer};
+
+/// Hits that the buffer of `all` has room for at first.
+const ROOM: usize = 256;
+
+/// How rays are handed over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Calls {
+    /// One call a ray.
+    Single,
+    /// One call for all rays of a set.
+    Batch,
+}
+
+/// A configuration.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Octogrid {
+    pub(crate) options: BuildOptions,
+    pub(crate) calls: Calls,
+}
+
+impl Tracer for Octogrid {
+    fn prepare<'a>(&self, mesh: TriMesh<'a>, _: usize) -> Build<'a> {
+        let Self { options, calls } = *self;
+        Box::new(move || Box::new(Built { scene: Scene::build(&mesh, &options).expect("it builds"), calls }))
+    }
+
+    fn is_exact(&self) -> bool {
+        true
+    }
+}
+
+/// A scene.
+pub(crate) struct Built {
+    pub(crate) scene: Scene,
+    pub(crate) calls: Calls,
+}
+
+impl Peer for Built {
+    fn closest(&self, rays: &[Ray], _: bool, answers: &mut [Answer]) {
+        match self.calls {
+            Calls::Single => {
+                rays.iter()
+                    .zip(answers)
+                    .for_each(|(ray, answer)| *answer = answer_of(&self.scene.closest(ray)));
+            }
+            Calls::Batch => {
+                let mut hits = vec![Hit::MISS; rays.len()];
+                self.scene.closest_batch(rays, &mut hits);
+                hits.iter().zip(answers).for_each(|(hit, answer)| *answer = answer_of(hit));
+            }
+        }
+    }
+
+    fn occluded(&self, rays: &[Ray], _: bool, blocked: &mut [bool]) {
+        match self.calls {
+            Calls::Single => {
+                rays.iter().zip(blocked).for_each(|(ray, blocked)| *blocked = self.scene.occluded(ray));
+            }
+            Calls::Batch => self.scene.occluded_batch(rays, blocked),
+        }
+    }
+
+    /// Unlike the others it collects and sorts the hits: that is how it knows each only once.
+    fn count(&self, rays: &[Ray], counts: &mut [u32]) {
+        match self.calls {
+            Calls::Single => {
+                let mut hits = vec![Hit::MISS; ROOM];
+                rays.iter().zip(counts).for_each(|(ray, count)| *count = self.count_one(ray, &mut hits));
+            }
+            Calls::Batch => {
+                let lists = self.scene.all_batch(rays);
+                let lengths = lists.offsets.windows(2).map(|pair| (pair[1] - pair[0]) as u32);
+                lengths.zip(counts).for_each(|(length, count)| *count = length);
+            }
+        }
+    }
+}
+
+impl Built {
+    fn count_one(&self, ray: &Ray, hits: &mut Vec<Hit>) -> u32 {
+        loop {
+            let found = self.scene.all(ray, hits);
+            if found.complete {
+                return found.len as u32;
+            }
+            hits.resize(2 * hits.len(), Hit::MISS);
+        }
+    }
+}
+
+#[inline(always)]
+fn answer_of(hit: &Hit) -> Answer {
+    Answer { t: hit.t, prim: hit.prim }
+}

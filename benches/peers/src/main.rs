@@ -41,7 +41,7 @@ mod survey;
 #[path = "../../../src/bin/octogrid/viewpoint.rs"]
 mod viewpoint;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -135,12 +135,15 @@ fn chosen(names: &[String]) -> Result<Vec<Contender>, Failure> {
     Ok(all.into_iter().filter(wanted).collect())
 }
 
+/// A scene, by its name without folder and ending.
 fn load(name: &str) -> Result<Loaded, Failure> {
     if name == LARGE_SOUP.0 {
         let cameras = builtin::by_name("soup").map_or(&[][..], |soup| soup.cameras);
         return Ok(Loaded { name: name.to_owned(), model: builtin::soup(LARGE_SOUP.1, 1), cameras });
     }
-    load::load(name)
+    let loaded = load::load(name)?;
+    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(Loaded { name: stem, ..loaded })
 }
 
 /// Where and how this was measured.

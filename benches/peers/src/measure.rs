@@ -144,7 +144,7 @@ fn trace(
     let mut traces: Vec<Option<Trace>> = checked.collect();
     for round in 0..effort.rounds.max(1) {
         for turn in 0..built.len() {
-            let at = (turn + 5 * round) % built.len();
+            let at = (turn + round) % built.len();
             let Some(trace) = &mut traces[at] else { continue };
             if effort.goes_on(round, trace.times.first().map(|sample| sample.wall)) {
                 trace.times.push(time(|| room.ask(&*built[at], set)).1);

@@ -83,12 +83,16 @@ fn spread(points: &[Point], n: usize) -> impl Iterator<Item = &Point> {
     (0..if points.is_empty() { 0 } else { n }).map(move |i| &points[i * points.len() / n])
 }
 
-/// From each point to each light, until just before it.
+/// From each point to each light, until just before it. Lights are above the scene, or above the middle
+/// of what is seen where the eye is inside.
 fn shadow((low, high): (DVec3, DVec3), eye: DVec3, points: &[Point], n: usize) -> Vec<Ray> {
     let rng = &mut Rng::new(101);
     let inside = eye.cmpge(low).all() && eye.cmple(high).all();
+    let seen = points.iter().map(|point| (point.at, point.at));
+    let seen = seen.reduce(|(low, high), (at, _)| (low.min(at), high.max(at))).unwrap_or((low, high));
     let light = |()| {
         if inside {
+            let (low, high) = seen;
             let at = DVec3::new(rng.range(0.1, 0.9), rng.range(0.6, 0.95), rng.range(0.1, 0.9));
             low + at * (high - low)
         } else {

@@ -29,6 +29,9 @@ mod load;
 #[path = "../../../src/bin/octogrid/report/machine.rs"]
 mod machine;
 #[allow(dead_code)]
+#[path = "../../../src/bin/octogrid/output.rs"]
+mod output;
+#[allow(dead_code)]
 #[path = "../../../src/bin/octogrid/report/statistics.rs"]
 mod statistics;
 #[allow(dead_code)]
@@ -41,6 +44,7 @@ mod survey;
 #[path = "../../../src/bin/octogrid/viewpoint.rs"]
 mod viewpoint;
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -50,6 +54,7 @@ use octogrid::builtin;
 use failure::Failure;
 use load::Loaded;
 use machine::Machine;
+use output::{Output, say};
 use roster::{BASELINE, Contender};
 
 /// The built-in scene `soup` with more triangles than it has.
@@ -88,34 +93,35 @@ fn main() -> ExitCode {
 
 fn run(args: &Args) -> Result<(), Failure> {
     if args.list {
-        roster::all().iter().for_each(|c| println!("{}{}", c.name, if c.usual { " *" } else { "" }));
-        return Ok(());
+        return roster::all()
+            .iter()
+            .try_for_each(|c| say(format_args!("{}{}", c.name, if c.usual { " *" } else { "" })));
     }
     if !peers::embree::library_is_there() {
         return Err(Failure::Expected("there is no Embree: run setup.sh, or set PEERS_EMBREE".into()));
     }
     std::fs::create_dir_all(&args.out).map_err(|e| Failure::at(&args.out, e))?;
+    let [table_file, samples_file] = ["table.md", "samples.csv"].map(|name| Output::at(&args.out.join(name)));
+    let (table_file, samples_file) = (table_file?, samples_file?);
     let contenders = chosen(&args.peers)?;
     let baseline = contenders.iter().position(|c| c.name == BASELINE).expect("it is always chosen");
     let (mut scenes, mut figures, mut text) = (Vec::new(), Vec::new(), heading());
-    println!("{text}");
+    say(&text)?;
     for name in &args.scenes {
         let loaded = load(name)?;
         let measured = measure::scene(&loaded, &contenders, &args.effort)
             .map_err(|what| Failure::Expected(format!("{name}: {what}")))?;
         figures.push(figures::of(&measured, baseline));
         let table = tables::scene(&measured, &contenders, &figures[figures.len() - 1]);
-        println!("\n{table}");
+        say(format_args!("\n{table}"))?;
         text += &format!("\n{table}\n");
         scenes.push(measured);
         // After each scene, so that a run that is stopped leaves what it has.
-        samples::save(&args.out.join("samples.csv"), &scenes, &contenders)
-            .map_err(|e| Failure::at(&args.out, e))?;
+        samples_file.write(|file| Ok(samples::write(file, &scenes, &contenders)?))?;
     }
     let means = tables::means(&scenes, &contenders, &figures, baseline);
-    println!("\n{means}");
-    std::fs::write(args.out.join("table.md"), text + &format!("\n{means}\n"))
-        .map_err(|e| Failure::at(&args.out, e))
+    say(format_args!("\n{means}"))?;
+    table_file.write(|file| writeln!(file, "{text}\n{means}"))
 }
 
 /// The contenders that are asked for, and the baseline.

@@ -1,6 +1,6 @@
 //! All samples as CSV, one a line.
 
-use std::path::Path;
+use std::io::Write;
 
 use serde::Serialize;
 
@@ -28,8 +28,8 @@ struct Line<'a> {
 ///
 /// # Errors
 /// Where the file can't be written.
-pub(crate) fn save(path: &Path, scenes: &[Measured], contenders: &[Contender]) -> csv::Result<()> {
-    let mut file = csv::Writer::from_path(path)?;
+pub(crate) fn write(file: impl Write, scenes: &[Measured], contenders: &[Contender]) -> csv::Result<()> {
+    let mut file = csv::Writer::from_writer(file);
     for measured in scenes {
         for (contender, score) in contenders.iter().zip(&measured.scores) {
             let blank = |what, round, sample: &Elapsed| Line {

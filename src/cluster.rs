@@ -4,7 +4,7 @@
 //! them. Each triangle lives in one cluster; voxels refer to clusters.
 
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use glam::{BVec4A, Vec3, Vec4};
 
 use crate::aabb::Aabb;
 use crate::lanes::{Isa, Lanes, WIDTH, axes, dispatch};
@@ -103,8 +103,19 @@ impl Cluster {
 
     /// The box around the triangles of the lanes in `mask`.
     pub(crate) fn bounds(&self, mask: u8) -> Aabb {
-        (0..WIDTH)
-            .filter(|lane| mask >> lane & 1 != 0)
-            .fold(Aabb::EMPTY, |b, lane| b.union(Aabb::around(self.triangle(lane))))
+        let mut bounds = Aabb::EMPTY;
+        for axis in 0..3 {
+            let (mut lo, mut hi) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
+            for half in [0, 4] {
+                let [a, b, c] = self.corners.each_ref().map(|corner| Vec4::from_slice(&corner[axis][half..]));
+                let bit = |lane: usize| mask >> (half + lane) & 1 != 0;
+                let keep = BVec4A::new(bit(0), bit(1), bit(2), bit(3));
+                lo = lo.min(Vec4::select(keep, a.min(b).min(c), Vec4::INFINITY));
+                hi = hi.max(Vec4::select(keep, a.max(b).max(c), Vec4::NEG_INFINITY));
+            }
+            bounds.lo[axis] = lo.min_element();
+            bounds.hi[axis] = hi.max_element();
+        }
+        bounds
     }
 }

@@ -21,6 +21,7 @@ pub mod obj;
 #[cfg(feature = "oracle")]
 pub mod oracle;
 mod overlap;
+mod parallel;
 mod query;
 mod ray;
 mod rng;

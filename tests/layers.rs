@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// The modules of each layer, the lowest-level layer first. A folder stands for all files in it.
 const LAYERS: &[(&str, &[&str])] = &[
-    ("numbers", &["lanes", "aabb", "exact", "rng"]),
+    ("numbers", &["lanes", "aabb", "exact", "rng", "parallel"]),
     ("vocabulary", &["ray", "hit", "query", "mesh", "model"]),
     ("pieces", &["triangle", "cluster", "kernel", "overlap", "arena", "descent", "dda", "validate"]),
     ("phases", &["build", "traverse"]),

@@ -1,0 +1,29 @@
+//! Work on the threads of the current rayon pool, or on this thread without the feature `parallel`.
+//!
+//! What is computed does not depend on it.
+
+/// Runs both.
+#[cfg(feature = "parallel")]
+pub(crate) fn join(a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
+    rayon::join(a, b);
+}
+
+/// Runs both.
+#[cfg(not(feature = "parallel"))]
+pub(crate) fn join(a: impl FnOnce(), b: impl FnOnce()) {
+    a();
+    b();
+}
+
+/// `f` of every item, in their order.
+#[cfg(feature = "parallel")]
+pub(crate) fn map<T: Sync, R: Send>(items: &[T], f: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
+    use rayon::prelude::*;
+    items.par_iter().with_min_len(256).map(f).collect()
+}
+
+/// `f` of every item, in their order.
+#[cfg(not(feature = "parallel"))]
+pub(crate) fn map<T, R>(items: &[T], f: impl Fn(&T) -> R) -> Vec<R> {
+    items.iter().map(f).collect()
+}

@@ -89,7 +89,7 @@ impl Structure {
     /// The hybrid with default parameters.
     pub const HYBRID: Structure = Structure::Hybrid(HybridParams {
         density: 0.1,
-        levels: 3,
+        levels: 8,
         group_cost: 0.5,
         brick_cost: 12.0,
         voxel_cost: 2.0,

@@ -48,56 +48,85 @@ pub struct Intersection {
 /// ```
 #[inline(always)]
 pub fn intersect(ray: &Ray, corners: [Vec3; 3], rule: EdgeRule) -> Option<Intersection> {
-    let found = match decide_rounded(ray, corners) {
-        Decision::Hit(at) => Some(at),
-        Decision::Miss => None,
-        Decision::Open => decide_exact(ray, corners, rule),
-    };
+    let rounded = Rounded::new(ray, corners);
+    // What is clearly inside is what nearly all calls are about.
+    let found = if rounded.is_inside() { rounded.intersection() } else { None };
+    let found = if found.is_some() { found } else { decide(&rounded, ray, corners, rule) };
     found.filter(|at| at.t.is_finite())
 }
 
-enum Decision {
-    Hit(Intersection),
-    Miss,
-    Open,
+/// Decides what is not a clear hit.
+#[cold]
+#[inline(never)]
+fn decide(rounded: &Rounded, ray: &Ray, corners: [Vec3; 3], rule: EdgeRule) -> Option<Intersection> {
+    if rounded.is_outside() { None } else { decide_exact(ray, corners, rule) }
 }
 
-/// Decides in f64 where the rounding error can't matter.
+/// A triangle and a line in f64, with the bounds of the rounding errors.
 ///
 /// The bounds: let A, E1, E2, D be the largest absolute components of s, e1, e2, d. Their rounding and
 /// that of products and sums give det, w1, w2 and e2.q an error of less than 64 * 2^-53 times D E1 E2,
 /// A D E2, A D E1 and A E1 E2.
-#[inline(always)]
-fn decide_rounded(ray: &Ray, corners: [Vec3; 3]) -> Decision {
-    const EPS: f64 = 64.0 / (1u64 << 53) as f64;
-    let [v0, v1, v2] = corners.map(Vec3::as_dvec3);
-    let (o, d) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
-    let (s, e1, e2) = (o - v0, v1 - v0, v2 - v0);
-    let (p, q) = (e2.cross(d), e1.cross(s));
-    let (det, w1, w2, numerator) = (e1.dot(p), s.dot(p), d.dot(q), e2.dot(q));
-    let size = |x: DVec3| x.abs().max_element();
-    let (a, d, e1, e2) = (EPS * size(s), size(d), size(e1), size(e2));
-    let (b1, b2, bt, bd) = (a * d * e2, a * d * e1, a * e1 * e2, EPS * d * e1 * e2);
-    let sign = 1f64.copysign(det);
-    let (w1, w2, abs) = (sign * w1, sign * w2, sign * det);
-    if abs <= bd {
-        return Decision::Open;
+struct Rounded {
+    /// w0, w1, w2, det and t det, with the sign of det.
+    w: [f64; 3],
+    det: f64,
+    numerator: f64,
+    /// The bounds of their errors; that of w0 is the largest of the three.
+    w_bounds: [f64; 3],
+    det_bound: f64,
+    numerator_bound: f64,
+}
+
+impl Rounded {
+    #[inline(always)]
+    fn new(ray: &Ray, corners: [Vec3; 3]) -> Self {
+        const EPS: f64 = 64.0 / (1u64 << 53) as f64;
+        let [v0, v1, v2] = corners.map(Vec3::as_dvec3);
+        let (o, d) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
+        let (s, e1, e2) = (o - v0, v1 - v0, v2 - v0);
+        let (p, q) = (e2.cross(d), e1.cross(s));
+        let (det, w1, w2, numerator) = (e1.dot(p), s.dot(p), d.dot(q), e2.dot(q));
+        let size = |x: DVec3| x.abs().max_element();
+        let (a, d, e1, e2) = (EPS * size(s), size(d), size(e1), size(e2));
+        let (b1, b2, det_bound) = (a * d * e2, a * d * e1, EPS * d * e1 * e2);
+        let sign = 1f64.copysign(det);
+        let (w1, w2, det) = (sign * w1, sign * w2, sign * det);
+        Self {
+            w: [det - w1 - w2, w1, w2],
+            det,
+            numerator: sign * numerator,
+            w_bounds: [2.0 * (det_bound + b1 + b2), b1, b2],
+            det_bound,
+            numerator_bound: a * e1 * e2,
+        }
     }
-    let w0 = abs - w1 - w2;
-    let b0 = 2.0 * (bd + b1 + b2);
-    if w0 < -b0 || w1 < -b1 || w2 < -b2 {
-        return Decision::Miss;
+
+    /// Certainly, and u and v are precise: they take the relative error of the bound of w0 to det.
+    #[inline(always)]
+    fn is_inside(&self) -> bool {
+        const PRECISE: f64 = 1.0 / (1u64 << 26) as f64;
+        let [w0, w1, w2] = self.w;
+        w0.min(w1).min(w2) > self.w_bounds[0] && self.w_bounds[0] <= self.det * PRECISE
     }
-    let inverse = 1.0 / abs;
-    let t = sign * numerator * inverse;
-    let error = t.abs() * (bd * inverse + 4.0 * f64::EPSILON) + bt * inverse;
-    let rounded = (t - error) as f32;
-    // u and v take the relative error of b0 / det.
-    const PRECISE: f64 = 1.0 / (1u64 << 26) as f64;
-    if w0 <= b0 || w1 <= b1 || w2 <= b2 || rounded != (t + error) as f32 || b0 > abs * PRECISE {
-        return Decision::Open;
+
+    /// Certainly.
+    fn is_outside(&self) -> bool {
+        self.det > self.det_bound && (0..3).any(|i| self.w[i] < -self.w_bounds[i])
     }
-    Decision::Hit(Intersection { t: rounded + 0.0, u: (w1 * inverse) as f32, v: (w2 * inverse) as f32 })
+
+    /// Where what is inside is met; `None` where the error of t leaves a doubt.
+    #[inline(always)]
+    fn intersection(&self) -> Option<Intersection> {
+        let inverse = 1.0 / self.det;
+        let t = self.numerator * inverse;
+        let error =
+            t.abs() * (self.det_bound * inverse + 4.0 * f64::EPSILON) + self.numerator_bound * inverse;
+        let rounded = (t - error) as f32;
+        let [_, w1, w2] = self.w;
+        let at = Intersection { t: rounded + 0.0, u: (w1 * inverse) as f32, v: (w2 * inverse) as f32 };
+        (rounded == (t + error) as f32).then_some(at)
+    }
 }
 
 /// Decides in exact arithmetic.
@@ -264,7 +293,7 @@ fn above(x: f64) -> f32 {
 /// The lanes in which the ray may meet the triangle within its interval, as bits.
 ///
 /// Never misses one that [`intersect`] finds there. The bounds: with A, E, D as in
-/// [`decide_rounded`], D <= 1 and 2^-24 for 2^-53, the errors of det and w are at most 48 * 2^-24 times
+/// [`Rounded`], D <= 1 and 2^-24 for 2^-53, the errors of det and w are at most 48 * 2^-24 times
 /// E E and A E, so that 2^-17 E (A + E) covers the w and twice det (whose sign may be the wrong one
 /// within its error); t is compared as t * det. Adding 2^-40 to E covers what underflows; where something
 /// overflows, so does its bound, and infinite and NaN bounds exclude nothing.

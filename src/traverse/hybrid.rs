@@ -6,10 +6,9 @@
 //!
 //! # Errors
 //! Times within bricks are f32. The slack of [`BrickPath`] makes up for their rounding, so that a voxel is
-//! visited at all times at which the path is in it. A side of a box lies at most 2^10 cells from the start:
-//! the roundings of the start, of the difference and of its product with `slope` misplace it by less than
-//! 2^-22 of the grid; voxels and boxes are built larger by 8 times that, see
-//! [`BRICK_MARGIN`](crate::dda::BRICK_MARGIN).
+//! visited at all times at which the path is in it. The time of a box's side is its place times `slope`
+//! plus `delay`: their roundings, and those of product and sum, misplace it by less than 2^-22 of the grid;
+//! voxels and boxes are built larger by 8 times that, see [`BRICK_MARGIN`](crate::dda::BRICK_MARGIN).
 
 use std::ops::ControlFlow;
 

@@ -39,6 +39,7 @@ fn help_is_as_documented() {
         help(&["report", "stability", "--help"]),
         snapbox::file!["cli/help-report-stability.txt"]
     );
+    assert_data_eq!(help(&["report", "scaling", "--help"]), snapbox::file!["cli/help-report-scaling.txt"]);
 }
 
 #[test]

@@ -169,6 +169,31 @@ fn stability_is_told_by_hazard_and_mesh() {
 }
 
 #[test]
+fn scaling_tells_every_size() {
+    let folder = Folder::new();
+    let small = ["--largest", "12000", "--rays", "400", "--rounds", "2", "--threads", "2", "--out", "s"];
+    let run = folder.run(&[&["report", "scaling", "soup", "room", "interior"], &small[..]].concat());
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    let rows = csv(&folder, "s/report.csv");
+    // At most two triangles more than asked for; `interior` is too large, and measured as it is.
+    let sizes =
+        [("soup", 10_000), ("soup", 12_000), ("room", 10_000), ("room", 12_000), ("interior", 97_036)];
+    assert_eq!(rows.len(), 1 + sizes.len());
+    for (row, (scene, size)) in rows[1..].iter().zip(sizes) {
+        let triangles: usize = row[1].parse().unwrap();
+        assert!(row[0] == scene && (size..size + 3).contains(&triangles), "{row:?}");
+        assert!(row[2..].iter().all(|number| number.parse::<f64>().unwrap() > 0.0), "{row:?}");
+    }
+    let json = std::fs::read(folder.path("s/report.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    assert_eq!((json["rays"].as_u64(), json["machine"]["threads"].as_u64()), (Some(400), Some(2)));
+    assert!(json["points"][4]["trace"]["ns"]["median"].is_number());
+    for (name, label) in [("build", "ns a triangle"), ("trace", "ns a ray")] {
+        svg_holds(&folder, &format!("s/{name}.svg"), &["triangles", label, "room, slope ", "interior"]);
+    }
+}
+
+#[test]
 fn wrong_use_is_told() {
     let folder = Folder::new();
     assert_eq!(folder.run(&["report"]).code, Some(2));
@@ -181,6 +206,9 @@ fn wrong_use_is_told() {
     let run = folder.run(&["report", "paper", "--sweep", "missing.obj"]);
     assert_eq!((run.code, run.stderr.lines().count()), (Some(1), 1), "{}", run.stderr);
     assert_eq!(folder.run(&["report", "convergence", "--samples", "1"]).code, Some(2));
+    assert_eq!(folder.run(&["report", "scaling", "--full", "--largest", "9"]).code, Some(2));
+    let run = folder.run(&["report", "scaling", "empty"]);
+    assert_eq!((run.code, run.stderr.lines().count()), (Some(1), 1), "{}", run.stderr);
     let run = folder.run(&["report", "convergence", "cube", "--size", "8x6"]);
     assert!(run.code == Some(1) && run.stderr.contains("no lights"), "{}", run.stderr);
 }

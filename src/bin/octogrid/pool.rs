@@ -1,5 +1,7 @@
 //! The threads that queries run on.
 
+use rayon::ThreadPool;
+
 use crate::failure::Failure;
 
 /// How many threads.
@@ -19,8 +21,15 @@ impl ThreadArgs {
         &self,
         work: impl FnOnce() -> Result<T, Failure> + Send,
     ) -> Result<T, Failure> {
-        let threads = self.threads.map_or(0, usize::from);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.map_err(|e| Failure::Expected(format!("can't start the threads: {e}")))?.install(work)
+        of(self.threads.map_or(0, usize::from))?.install(work)
     }
+}
+
+/// A pool of that many threads, or of one a core for 0.
+///
+/// # Errors
+/// Where the system refuses the threads.
+pub(crate) fn of(threads: usize) -> Result<ThreadPool, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|e| Failure::Expected(format!("can't start the threads: {e}")))
 }

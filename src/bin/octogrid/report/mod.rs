@@ -2,11 +2,13 @@
 
 mod accuracy;
 mod convergence;
+mod fit;
 mod folder;
 mod machine;
 mod numbers;
 mod paper;
 mod plot;
+mod scaling;
 mod stability;
 mod statistics;
 
@@ -27,6 +29,7 @@ enum Report {
     Accuracy(accuracy::Args),
     Convergence(convergence::Args),
     Stability(stability::Args),
+    Scaling(scaling::Args),
 }
 
 /// Runs the command.
@@ -39,5 +42,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Report::Accuracy(args) => accuracy::run(args),
         Report::Convergence(args) => convergence::run(args),
         Report::Stability(args) => stability::run(args),
+        Report::Scaling(args) => scaling::run(args),
     }
 }

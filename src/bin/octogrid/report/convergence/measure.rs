@@ -9,10 +9,10 @@ use std::time::Instant;
 use octogrid::Structure;
 use serde::Serialize;
 
-use super::fit;
 use super::image::{Image, Reference, View};
 use crate::failure::Failure;
 use crate::integrators::Integrator;
+use crate::report::fit;
 use crate::report::statistics::Spread;
 
 /// The error, relative to the mean luminance, whose time is told.

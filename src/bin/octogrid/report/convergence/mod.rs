@@ -1,7 +1,6 @@
 //! `octogrid report convergence`: the error of images against the time that they take.
 
 mod files;
-mod fit;
 mod image;
 mod measure;
 

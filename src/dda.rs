@@ -29,19 +29,16 @@ pub(crate) const BRICK_MARGIN: f64 = 1.0 / (1u64 << 19) as f64;
 /// The part of a ray from where it enters the grid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Path {
-    // First, lest the compiler joins a zero here with what comes before: valgrind 3.19 does not know that
-    // instruction (vmovq between registers), and instructions are counted under it.
-    delay: f64,
     /// Where it starts, in cells of the mirrored grid.
     pub(crate) origin: [f64; 3],
     /// The time that it takes to cross one cell along each axis, at least 1.
     pub(crate) width: [f64; 3],
     /// Bit `axis` is set where the axis is mirrored.
     pub(crate) octant: u32,
-    /// Time 0 is where t of the ray is `start`, and `delay` later.
-    start: f64,
     /// Time a unit of t.
     speed: f64,
+    /// The time of t = 0, rounded up.
+    zero: f64,
 }
 
 /// How a ray meets a grid.
@@ -78,13 +75,13 @@ impl Path {
             return Clip::Miss;
         }
         let cells = 1.0 / grid.cell;
+        let speed = steepest * cells;
         Clip::Path(Self {
             origin: axes(|axis| (position[axis] + start * speeds[axis]) * cells),
             width: axes(|axis| steepest * inverse[axis]),
             octant,
-            start,
-            delay: 0.0,
-            speed: steepest * cells,
+            speed,
+            zero: zero(speed, start, 0.0),
         })
     }
 
@@ -127,28 +124,37 @@ impl Path {
             }),
             width: axes(|axis| steepest / f64::from(ray.dir[axis]).abs().max(least)),
             octant,
-            start,
-            delay: 0.0,
             speed: steepest / grid.cell,
+            zero: 0.0,
         };
         let far = path.origin.iter().any(|&p| p.is_nan() || p.abs() > FAR * f64::from(grid.longest()));
         if far {
             return Clip::TooFar;
         }
         // Rounding puts the start before the grid.
-        path.delay = (0..3).map(|axis| -path.origin[axis] * path.width[axis]).fold(0.0, f64::max);
+        let delay = (0..3).map(|axis| -path.origin[axis] * path.width[axis]).fold(0.0, f64::max);
         for axis in 0..3 {
-            path.origin[axis] += path.delay / path.width[axis];
+            path.origin[axis] += delay / path.width[axis];
         }
+        path.zero = zero(path.speed, start, delay);
         Clip::Path(path)
     }
 
-    /// The time of t, rounded up: no hit at `t` or before comes later.
+    /// A time no hit comes after whose distance rounds to `t` or less.
     #[inline(always)]
-    fn time(&self, t: f64) -> f64 {
-        let slack = (t.abs() + self.start.abs()) * (2.0 * f64::EPSILON);
-        (t - self.start + slack) * self.speed * (1.0 + 4.0 * f64::EPSILON) - self.delay
+    fn time(&self, t: f32) -> f64 {
+        let time = f64::from(t) * self.speed;
+        // Twice half a unit in the last place of t, so that rounding here is covered.
+        time + time.abs() * (2.0 * HALF_ULP) + self.zero
     }
+}
+
+/// The time of t = 0, rounded up, on a path that starts `delay` after the time of t = `start`.
+#[inline(always)]
+fn zero(speed: f64, start: f64, delay: f64) -> f64 {
+    const SLACK: f64 = 1.0 / (1u64 << 50) as f64;
+    let back = start * speed;
+    (back.abs() + delay) * SLACK + LEAST * speed - (back + delay)
 }
 
 /// The time after which a walk finds nothing more: that of the query's `t_max`.
@@ -162,7 +168,7 @@ pub(crate) struct Limit {
 impl Limit {
     #[inline(always)]
     pub(crate) fn new(path: &Path, t_max: f32) -> Self {
-        Self { t_max, time: path.time(rounds_to(t_max)) }
+        Self { t_max, time: path.time(t_max) }
     }
 
     /// Follows `t_max`, and says whether it has changed.

@@ -19,7 +19,7 @@ pub(crate) fn join(a: impl FnOnce(), b: impl FnOnce()) {
 #[cfg(feature = "parallel")]
 pub(crate) fn map<T: Sync, R: Send>(items: &[T], f: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
     use rayon::prelude::*;
-    items.par_iter().with_min_len(256).map(f).collect()
+    items.par_iter().map(f).collect()
 }
 
 /// `f` of every item, in their order.

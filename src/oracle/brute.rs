@@ -6,6 +6,7 @@ use super::scan::Answer;
 use crate::hit::Hit;
 use crate::lanes::{Isa, Lanes, dispatch};
 use crate::mesh::TriMesh;
+use crate::parallel;
 use crate::query::EdgeRule;
 use crate::ray::{Ray, RayPacket};
 use crate::triangle::{RayLanes, candidates, intersect};
@@ -14,7 +15,7 @@ use crate::triangle::{RayLanes, candidates, intersect};
 pub fn answers(mesh: &TriMesh<'_>, rays: &[Ray]) -> Vec<Answer> {
     let isa = Isa::detect();
     let packets: Vec<&[Ray]> = rays.chunks(RayPacket::LEN).collect();
-    map(&packets, |rays| dispatch!(isa, lanes => packet(lanes, mesh, rays))).concat()
+    parallel::map(&packets, |rays| dispatch!(isa, lanes => packet(lanes, mesh, rays))).concat()
 }
 
 #[inline(always)]
@@ -38,15 +39,4 @@ fn packet<L: Lanes>(lanes: L, mesh: &TriMesh<'_>, rays: &[Ray]) -> Vec<Answer> {
         }
     }
     closed.into_iter().zip(crossings).map(|(closed, all)| Answer::of(closed, all)).collect()
-}
-
-#[cfg(feature = "parallel")]
-fn map<A: Sync, B: Send>(items: &[A], f: impl Fn(&A) -> B + Sync + Send) -> Vec<B> {
-    use rayon::prelude::*;
-    items.par_iter().map(f).collect()
-}
-
-#[cfg(not(feature = "parallel"))]
-fn map<A, B>(items: &[A], f: impl Fn(&A) -> B) -> Vec<B> {
-    items.iter().map(f).collect()
 }

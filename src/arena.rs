@@ -108,8 +108,7 @@ const _: () = assert!(size_of::<VoxelWord>() == 4 && size_of::<Reference>() == 4
 const _: () = assert!(size_of::<Brick>() == 16 && size_of::<BoxGroup>() == 224);
 
 /// The uniform grid on top: cubic voxels.
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Grid {
     /// The lower corner.
     pub(crate) lo: [f64; 3],
@@ -117,13 +116,37 @@ pub(crate) struct Grid {
     pub(crate) cell: f64,
     /// The number of voxels along each axis, at least 1.
     pub(crate) dims: [u32; 3],
-    /// Zero.
-    pub(crate) padding: u32,
+    /// The same for the walks.
+    pub(crate) axes: GridAxes,
+}
+
+/// What each query needs of a grid, an axis a lane; the fourth lane is that of an axis at 0 with one voxel of
+/// infinite width.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct GridAxes {
+    /// The lower corner.
+    pub(crate) lo: [f64; 4],
+    /// The width.
+    pub(crate) size: [f64; 4],
+    /// The number of voxels.
+    pub(crate) dims: [f64; 4],
+    /// The distance in `words` between neighbours.
+    pub(crate) strides: [f64; 4],
+    /// Voxels a unit of length.
+    pub(crate) per_length: f64,
 }
 
 impl Grid {
     pub(crate) fn new(lo: [f64; 3], cell: f64, dims: [u32; 3]) -> Self {
-        Self { lo, cell, dims, padding: 0 }
+        let [x, y, z] = dims.map(f64::from);
+        let axes = GridAxes {
+            lo: [lo[0], lo[1], lo[2], 0.0],
+            size: [x * cell, y * cell, z * cell, f64::INFINITY],
+            dims: [x, y, z, 1.0],
+            strides: [1.0, x, x * y, 0.0],
+            per_length: 1.0 / cell,
+        };
+        Self { lo, cell, dims, axes }
     }
 
     /// The number of voxels.

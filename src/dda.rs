@@ -17,7 +17,7 @@
 use crate::arena::Grid;
 use crate::descent::first_exit;
 use crate::exact::{two_product, two_sum};
-use crate::lanes::axes;
+use crate::lanes::{Lanes, axes};
 use crate::ray::Ray;
 
 /// The margin of the voxels of a structure that is walked in f64, relative to the size of the scene.
@@ -26,80 +26,114 @@ pub(crate) const LIST_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 /// The margin of the voxels and boxes of a structure of bricks, whose times are f32.
 pub(crate) const BRICK_MARGIN: f64 = 1.0 / (1u64 << 19) as f64;
 
-/// The part of a ray from where it enters the grid.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Path {
+/// The part of a ray from where it enters the grid; an axis a lane.
+#[derive(Clone, Copy)]
+pub(crate) struct Path<L: Lanes> {
     /// Where it starts, in cells of the mirrored grid.
-    pub(crate) origin: [f64; 3],
+    pub(crate) origin: L::F64,
     /// The time that it takes to cross one cell along each axis, at least 1.
-    pub(crate) width: [f64; 3],
-    /// Bit `axis` is set where the axis is mirrored.
+    pub(crate) width: L::F64,
+    /// Where the axis is mirrored.
+    pub(crate) mirrored: L::Mask4,
+    /// The same as bits.
     pub(crate) octant: u32,
-    /// Time a unit of t.
-    speed: f64,
-    /// The time of t = 0, rounded up.
-    zero: f64,
+    pub(crate) clock: Clock,
 }
 
 /// How a ray meets a grid.
-pub(crate) enum Clip {
+pub(crate) enum Clip<L: Lanes> {
     /// Certainly not.
     Miss,
     /// Along this path, if at all.
-    Path(Path),
+    Path(Path<L>),
     /// Its origin is so far away (more than about 2^63 sizes of the grid) that f64 can't place it.
     TooFar,
 }
 
-impl Path {
-    /// Clips a valid ray to the grid.
+impl<L: Lanes> Path<L> {
+    /// Clips a ray to the grid; one that is not valid misses.
     #[inline(always)]
-    pub(crate) fn clip(ray: &Ray, grid: &Grid) -> Clip {
+    pub(crate) fn clip(lanes: L, ray: &Ray, grid: &Grid) -> Clip<L> {
         // Origins so near, in sizes of the grid, that rounding stays within what the grid is larger than
         // the scene.
         const NEAR: f64 = 256.0;
+        let ([ox, oy, oz], [dx, dy, dz]) = (ray.origin.to_array(), ray.dir.to_array());
         let steepest = f64::from(ray.dir.abs().max_element());
-        let speeds = axes(|axis| f64::from(ray.dir[axis]).abs().max(steepest * LEAST_SPEED));
-        let inverse = axes(|axis| 1.0 / speeds[axis]);
-        let octant = ray.octant();
-        let size = axes(|axis| f64::from(grid.dims[axis]) * grid.cell);
-        let position = axes(|axis| f64::from(ray.origin[axis]) - grid.lo[axis]);
-        let position = axes(|axis| mirror(octant, axis, position[axis], size[axis]));
-        if (0..3).any(|axis| position[axis].abs() > NEAR * size[axis]) {
-            return Self::clip_far(ray, grid);
+        // In the fourth lane, whose lower plane is passed at t_min.
+        let origin = lanes.load4(&[ox, oy, oz, -ray.t_min].map(f64::from));
+        let dir = lanes.load4(&[dx, dy, dz, 1.0].map(f64::from));
+        let mirrored = lanes.less4(dir, lanes.splat4(0.0));
+        let size = lanes.load4(&grid.axes.size);
+        let position = origin - lanes.load4(&grid.axes.lo);
+        let position = lanes.select4(mirrored, size - position, position);
+        let near = lanes.less4(lanes.abs4(position), lanes.splat4(NEAR) * size);
+        let finite = lanes.less4(lanes.abs4(dir), lanes.splat4(f64::INFINITY));
+        if lanes.bits4(near & finite) != 0b1111 || steepest == 0.0 || ray.t_min >= ray.t_max {
+            return Self::clip_any(lanes, ray, grid, mirrored);
         }
-        let enter = axes(|axis| -position[axis] * inverse[axis]);
-        let leave = axes(|axis| (size[axis] - position[axis]) * inverse[axis]);
-        let start = f64::from(ray.t_min).max(enter[0]).max(enter[1]).max(enter[2]);
-        if start > rounds_to(ray.t_max).min(leave[0]).min(leave[1]).min(leave[2]) {
+        let least = steepest * LEAST_SPEED;
+        let speeds = lanes.max4(lanes.abs4(dir), lanes.load4(&[least, least, least, 0.0]));
+        let inverse = lanes.splat4(1.0) / speeds;
+        let start = lanes.greatest4(-position * inverse);
+        let end = lesser(lanes.least4((size - position) * inverse), rounds_to(ray.t_max));
+        // NaN, which t_max may be, is no path either.
+        if !(start <= end) {
             return Clip::Miss;
         }
-        let cells = 1.0 / grid.cell;
-        let speed = steepest * cells;
         Clip::Path(Self {
-            origin: axes(|axis| (position[axis] + start * speeds[axis]) * cells),
-            width: axes(|axis| steepest * inverse[axis]),
-            octant,
-            speed,
-            zero: zero(speed, start, 0.0),
+            origin: (position + lanes.splat4(start) * speeds) * lanes.splat4(grid.axes.per_length),
+            width: lanes.splat4(steepest) * inverse,
+            mirrored,
+            octant: lanes.bits4(mirrored),
+            clock: Clock::new(steepest * grid.axes.per_length, start, 0.0),
         })
     }
 
-    /// The same for an origin anywhere.
+    /// The same for any ray.
+    #[inline(always)]
+    fn clip_any(lanes: L, ray: &Ray, grid: &Grid, mirrored: L::Mask4) -> Clip<L> {
+        match FarPath::clip(ray, grid) {
+            Ok(Some(FarPath { origin, width, clock })) => Clip::Path(Self {
+                origin: lanes.load4(&origin),
+                width: lanes.load4(&width),
+                mirrored,
+                octant: lanes.bits4(mirrored),
+                clock,
+            }),
+            Ok(None) => Clip::Miss,
+            Err(TooFar) => Clip::TooFar,
+        }
+    }
+}
+
+/// A [`Path`] of a ray whose origin may be far away.
+struct FarPath {
+    origin: [f64; 4],
+    width: [f64; 4],
+    clock: Clock,
+}
+
+/// f64 can't place the origin.
+struct TooFar;
+
+impl FarPath {
     #[cold]
     #[inline(never)]
-    fn clip_far(ray: &Ray, grid: &Grid) -> Clip {
+    fn clip(ray: &Ray, grid: &Grid) -> Result<Option<Self>, TooFar> {
         // Bounds the error of a quotient of differences, but for 2^-52 of the grid's width, by which the scene
         // is certainly inside.
         const SLACK: f64 = 1.0 / (1u64 << 51) as f64;
+        if !ray.is_valid() {
+            return Ok(None);
+        }
         let (mut enter, mut leave) = (f64::from(ray.t_min), rounds_to(ray.t_max));
         for axis in 0..3 {
-            let size = f64::from(grid.dims[axis]) * grid.cell;
+            let size = grid.axes.size[axis];
             let position = f64::from(ray.origin[axis]) - grid.lo[axis];
             let d = f64::from(ray.dir[axis]);
             if d == 0.0 {
                 if position < -SLACK * size || position > (1.0 + SLACK) * size {
-                    return Clip::Miss;
+                    return Ok(None);
                 }
                 continue;
             }
@@ -108,75 +142,89 @@ impl Path {
             enter = enter.max(near - SLACK * near.abs());
             leave = leave.min(far + SLACK * far.abs());
         }
-        if enter <= leave { Self::from_far(ray, grid, enter) } else { Clip::Miss }
+        if enter <= leave { Self::from(ray, grid, enter).map(Some) } else { Ok(None) }
     }
 
-    fn from_far(ray: &Ray, grid: &Grid, start: f64) -> Clip {
+    fn from(ray: &Ray, grid: &Grid, start: f64) -> Result<Self, TooFar> {
         /// Places in units S of the grid's size up to which their errors stay below 2^-38 S.
         const FAR: f64 = 4096.0;
         let octant = ray.octant();
         let steepest = f64::from(ray.dir.abs().max_element());
-        let least = steepest * LEAST_SPEED;
         let mut path = Self {
-            origin: axes(|axis| {
-                let position = advance(ray, axis, start, grid.lo[axis]) / grid.cell;
-                mirror(octant, axis, position, f64::from(grid.dims[axis]))
-            }),
-            width: axes(|axis| steepest / f64::from(ray.dir[axis]).abs().max(least)),
-            octant,
-            speed: steepest / grid.cell,
-            zero: 0.0,
+            origin: [0.0; 4],
+            width: [1.0; 4],
+            clock: Clock { speed: steepest / grid.cell, zero: 0.0 },
         };
-        let far = path.origin.iter().any(|&p| p.is_nan() || p.abs() > FAR * f64::from(grid.longest()));
-        if far {
-            return Clip::TooFar;
+        let mut delay = 0f64;
+        for axis in 0..3 {
+            let speed = f64::from(ray.dir[axis]).abs().max(steepest * LEAST_SPEED);
+            path.width[axis] = steepest / speed;
+            let place = advance(ray, axis, start, grid.lo[axis]) / grid.cell;
+            let place = if octant >> axis & 1 != 0 { f64::from(grid.dims[axis]) - place } else { place };
+            if place.is_nan() || place.abs() > FAR * f64::from(grid.longest()) {
+                return Err(TooFar);
+            }
+            path.origin[axis] = place;
+            // Rounding puts the start before the grid.
+            delay = delay.max(-place * path.width[axis]);
         }
-        // Rounding puts the start before the grid.
-        let delay = (0..3).map(|axis| -path.origin[axis] * path.width[axis]).fold(0.0, f64::max);
         for axis in 0..3 {
             path.origin[axis] += delay / path.width[axis];
         }
-        path.zero = zero(path.speed, start, delay);
-        Clip::Path(path)
+        path.clock = Clock::new(path.clock.speed, start, delay);
+        Ok(path)
+    }
+}
+
+/// Turns t into time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Clock {
+    /// Time a unit of t.
+    speed: f64,
+    /// The time of t = 0, rounded up.
+    zero: f64,
+}
+
+impl Clock {
+    /// Of a path that starts `delay` after the time of t = `start`.
+    #[inline(always)]
+    fn new(speed: f64, start: f64, delay: f64) -> Self {
+        const SLACK: f64 = 1.0 / (1u64 << 50) as f64;
+        let back = start * speed;
+        Self { speed, zero: (back.abs() + delay) * SLACK + LEAST * speed - (back + delay) }
     }
 
     /// A time no hit comes after whose distance rounds to `t` or less.
     #[inline(always)]
-    fn time(&self, t: f32) -> f64 {
+    fn time(self, t: f32) -> f64 {
         let time = f64::from(t) * self.speed;
         // Twice half a unit in the last place of t, so that rounding here is covered.
         time + time.abs() * (2.0 * HALF_ULP) + self.zero
     }
 }
 
-/// The time of t = 0, rounded up, on a path that starts `delay` after the time of t = `start`.
-#[inline(always)]
-fn zero(speed: f64, start: f64, delay: f64) -> f64 {
-    const SLACK: f64 = 1.0 / (1u64 << 50) as f64;
-    let back = start * speed;
-    (back.abs() + delay) * SLACK + LEAST * speed - (back + delay)
-}
-
-/// The time after which a walk finds nothing more: that of the query's `t_max`.
+/// The time after which a walk finds nothing more: that of the query's `t_max`, or when it leaves the grid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limit {
     t_max: f32,
+    end: f64,
     /// No hit that rounds to `t_max` or less comes later.
     pub(crate) time: f64,
 }
 
 impl Limit {
+    /// `end` is when the path leaves the grid, or infinity.
     #[inline(always)]
-    pub(crate) fn new(path: &Path, t_max: f32) -> Self {
-        Self { t_max, time: path.time(t_max) }
+    pub(crate) fn new(clock: Clock, end: f64, t_max: f32) -> Self {
+        Self { t_max, end, time: lesser(clock.time(t_max), end) }
     }
 
     /// Follows `t_max`, and says whether it has changed.
     #[inline(always)]
-    pub(crate) fn update(&mut self, path: &Path, t_max: f32) -> bool {
+    pub(crate) fn update(&mut self, clock: Clock, t_max: f32) -> bool {
         let changed = t_max != self.t_max;
         if changed {
-            *self = Self::new(path, t_max);
+            *self = Self::new(clock, self.end, t_max);
         }
         changed
     }
@@ -185,10 +233,10 @@ impl Limit {
 /// The least speed along an axis, relative to the largest.
 const LEAST_SPEED: f64 = 1.0 / (1u64 << 60) as f64;
 
-/// A position in a grid of a given size, seen from the corner where the octant's rays come from.
+/// The lesser one of two numbers, `b` where one is NaN: one instruction, as f64's own is not.
 #[inline(always)]
-fn mirror(octant: u32, axis: usize, position: f64, size: f64) -> f64 {
-    if octant >> axis & 1 != 0 { size - position } else { position }
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 /// No less than the largest distance that rounds to `t`: hits count if their rounded distance is within.
@@ -212,28 +260,59 @@ fn advance(ray: &Ray, axis: usize, t: f64, lo: f64) -> f64 {
     sum + (sum_error + position_error + step_error)
 }
 
-/// A voxel on the path, one of a block of voxels.
+/// A voxel of the top grid on the path.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Dda {
     /// When the path leaves the voxel along each axis.
     pub(crate) exit: [f64; 3],
-    /// How many voxels of the block follow along each axis.
-    pub(crate) left: [u32; 3],
-    /// The index of the voxel in the block.
+    /// How many voxels of the grid follow along each axis.
+    left: [u32; 3],
+    /// The index of the voxel.
     pub(crate) voxel: u32,
 }
 
+/// What steps of a [`Dda`] add.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Steps {
+    /// The time from plane to plane along each axis.
+    pub(crate) width: [f64; 3],
+    /// The distance between the indices of neighbours.
+    stride: [i32; 3],
+    /// When the path leaves the grid: a little before it leaves the last voxel, so that no step leads out of
+    /// the grid, unless that is at the very start.
+    pub(crate) end: f64,
+}
+
 impl Dda {
-    /// The voxel of the grid in which the path starts.
+    /// The voxel of the grid in which the path starts, and the steps from there.
     #[inline(always)]
-    pub(crate) fn new(path: &Path, grid: &Grid) -> Self {
-        let strides = grid.strides();
-        let index = axes(|axis| (path.origin[axis] as u32).min(grid.dims[axis] - 1));
-        let left = axes(|axis| grid.dims[axis] - 1 - index[axis]);
-        let offset =
-            axes(|axis| strides[axis] * if path.octant >> axis & 1 != 0 { left[axis] } else { index[axis] });
-        let exit = axes(|axis| (f64::from(index[axis] + 1) - path.origin[axis]) * path.width[axis]);
-        Self { exit, left, voxel: offset[0] + offset[1] + offset[2] }
+    pub(crate) fn new<L: Lanes>(lanes: L, path: &Path<L>, grid: &Grid) -> (Self, Steps) {
+        // Rounding moves a plane that is left last by less, and the scene is inside the grid by more.
+        const EARLY: f64 = 1.0 - 1.0 / (1u64 << 40) as f64;
+        let (zero, half, one) = (lanes.splat4(0.0), lanes.splat4(0.5), lanes.splat4(1.0));
+        let strides = lanes.load4(&grid.axes.strides);
+        let last = lanes.load4(&grid.axes.dims) - one;
+        // To the nearest integer, half a cell back: the start may be on the voxel's planes.
+        let rounding = lanes.splat4(ROUNDING);
+        let index = lanes.min4(lanes.max4(path.origin - half, zero), last) + rounding - rounding;
+        let left = last - index;
+        let exit = (index + one - path.origin) * path.width;
+        let [ex, ey, ez, _] = lanes.store4(exit + left * path.width);
+        let across = lanes.store4(lanes.select4(path.mirrored, left, index) * strides);
+        let strides = lanes.store4(lanes.select4(path.mirrored, -strides, strides) + rounding);
+        let left = lanes.store4(left + rounding);
+        let (exit, width) = (lanes.store4(exit), lanes.store4(path.width));
+        let dda = Self {
+            exit: axes(|axis| exit[axis]),
+            left: axes(|axis| integer(left[axis]) as u32),
+            voxel: integer(across[0] + across[1] + across[2] + ROUNDING) as u32,
+        };
+        let steps = Steps {
+            width: axes(|axis| width[axis]),
+            stride: axes(|axis| integer(strides[axis])),
+            end: lesser(lesser(ex, ey), ez) * EARLY,
+        };
+        (dda, steps)
     }
 
     /// The axis along which the path leaves first.
@@ -242,37 +321,42 @@ impl Dda {
         first_exit(&self.exit)
     }
 
-    /// Steps to the next voxel; false where the block ends there, or the path leaves after `limit`.
+    /// Steps to the next voxel; false where the path leaves after `limit`, which is no later than its end.
     #[inline(always)]
-    pub(crate) fn advance(&mut self, limit: f64, width: &[f64; 3], stride: &[i32; 3]) -> bool {
+    pub(crate) fn advance(&mut self, limit: f64, steps: &Steps) -> bool {
         // Constant indices keep the state in registers.
         match self.axis() {
-            0 => self.exit[0] <= limit && self.step(0, width, stride),
-            1 => self.exit[1] <= limit && self.step(1, width, stride),
-            _ => self.exit[2] <= limit && self.step(2, width, stride),
+            0 => self.exit[0] <= limit && self.cross(0, steps),
+            1 => self.exit[1] <= limit && self.cross(1, steps),
+            _ => self.exit[2] <= limit && self.cross(2, steps),
         }
     }
 
-    /// Steps to the next voxel along `axis`; false where the block ends there.
     #[inline(always)]
-    pub(crate) fn step(&mut self, axis: usize, width: &[f64; 3], stride: &[i32; 3]) -> bool {
+    fn cross(&mut self, axis: usize, steps: &Steps) -> bool {
+        self.exit[axis] += steps.width[axis];
+        self.voxel = self.voxel.wrapping_add_signed(steps.stride[axis]);
+        true
+    }
+
+    /// Steps to the next voxel along `axis`; false where the grid ends there.
+    #[inline(always)]
+    pub(crate) fn step(&mut self, axis: usize, steps: &Steps) -> bool {
         if self.left[axis] == 0 {
             return false;
         }
         self.left[axis] -= 1;
-        self.exit[axis] += width[axis];
-        self.voxel = self.voxel.wrapping_add_signed(stride[axis]);
-        true
+        self.cross(axis, steps)
     }
 }
 
-/// The distance between the indices of neighbours along each axis, in the direction of the path.
+/// What is added to an integer of 32 bits, with sign, to have it in the low bits; a number is rounded to it.
+const ROUNDING: f64 = 1.5 * (1u64 << 52) as f64;
+
+/// The integer to which [`ROUNDING`] was added.
 #[inline(always)]
-pub(crate) fn signed_strides(strides: [u32; 3], octant: u32) -> [i32; 3] {
-    std::array::from_fn(|axis| {
-        let stride = strides[axis] as i32;
-        if octant >> axis & 1 != 0 { -stride } else { stride }
-    })
+fn integer(x: f64) -> i32 {
+    x.to_bits() as i32
 }
 
 #[cfg(test)]
@@ -280,18 +364,18 @@ mod tests {
     use super::*;
     use crate::arena::LIST_LEVELS;
     use crate::descent::General;
+    use crate::lanes::Portable;
 
     /// The voxels that a path through a grid of 1 x 1 x 1 cells visits.
     fn visited(ray: Ray, dims: [u32; 3]) -> Vec<[u32; 3]> {
         let grid = Grid::new([0.0; 3], 1.0, dims);
-        let Clip::Path(path) = Path::clip(&ray, &grid) else { return vec![] };
-        let mut dda = Dda::new(&path, &grid);
-        let strides = signed_strides(grid.strides(), path.octant);
+        let Clip::Path(path) = Path::clip(Portable, &ray, &grid) else { return vec![] };
+        let (mut dda, steps) = Dda::new(Portable, &path, &grid);
         let mut voxels = vec![];
         loop {
             let i = dda.voxel;
             voxels.push([i % dims[0], i / dims[0] % dims[1], i / dims[0] / dims[1]]);
-            if !dda.step(dda.axis(), &path.width, &strides) {
+            if !dda.step(dda.axis(), &steps) {
                 return voxels;
             }
         }
@@ -303,6 +387,15 @@ mod tests {
         assert_eq!(visited(ray, [3, 2, 1]), [[0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0]]);
         let back = Ray::new([3.5, 2.5, 0.5], [-2.0, -2.0, -0.0]);
         assert_eq!(visited(back, [3, 2, 1]), [[2, 1, 0], [1, 1, 0], [1, 0, 0], [0, 0, 0]]);
+    }
+
+    #[test]
+    fn rays_start_before_their_origin_whatever_their_length() {
+        for length in [1e-30, 1.0, 1e35] {
+            let ray =
+                Ray::new([2.5, 0.5, 0.5], [length, 0.0, 0.0]).with_interval(-2.0 / length, f32::INFINITY);
+            assert_eq!(visited(ray, [4, 1, 1]).len(), 4, "{length}");
+        }
     }
 
     #[test]
@@ -336,7 +429,7 @@ mod tests {
     #[test]
     fn too_far_is_told() {
         let grid = Grid::new([0.0; 3], 1.0, [2, 2, 1]);
-        let from = |x: f32| Path::clip(&Ray::new([-x, 0.5, 0.5], [1.0, 0.0, 0.0]), &grid);
+        let from = |x: f32| Path::clip(Portable, &Ray::new([-x, 0.5, 0.5], [1.0, 0.0, 0.0]), &grid);
         assert!(matches!(from(1e18), Clip::Path(_)));
         assert!(matches!(from(1e30), Clip::TooFar));
     }

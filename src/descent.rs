@@ -117,8 +117,10 @@ impl Halves {
     pub(crate) fn descend_in<L: Lanes>(&self, lanes: L, time: f64, rises: u32) -> Self {
         let exit = lanes.load4(&self.exit);
         let width = lanes.splat4(0.5) * lanes.load4(&self.width);
-        let (exit, before) = lanes.select_above4(lanes.splat4(time), exit - width, exit);
-        Self { exit: lanes.store4(exit), width: lanes.store4(width), voxel: rises ^ before }
+        let middle = exit - width;
+        let before = lanes.less4(lanes.splat4(time), middle);
+        let exit = lanes.select4(before, middle, exit);
+        Self { exit: lanes.store4(exit), width: lanes.store4(width), voxel: rises ^ lanes.bits4(before) }
     }
 
     /// Steps along `axis`. False where that leads out of the voxel; the state then is that of the first

@@ -10,7 +10,8 @@ use crate::lanes::{Lanes, axes};
 use crate::query::EdgeRule;
 use crate::ray::Ray;
 use crate::triangle::{
-    Intersection, Once, RayLanes, Rounding, Scale, Twice, Vec3Lanes, candidates, cross, dot, intersect, minus,
+    Intersection, Once, RayLanes, Rounding, Scale, Twice, Vec3Lanes, candidates, clear_hit, cross, decide,
+    dot, minus,
 };
 
 /// A way to intersect a ray with triangles, for [`Scene::query_with`](crate::Scene::query_with).
@@ -79,8 +80,17 @@ impl Test for Exact {
 
     #[inline(always)]
     fn decide<L: Lanes>(_: L, (): &(), subject: &Subject<'_>) -> Option<Intersection> {
-        intersect(subject.ray, subject.cluster.triangle(subject.lane), subject.rule)
+        let &Subject { ray, cluster, lane, rule } = subject;
+        clear_hit(ray, cluster.triangle(lane)).or_else(|| unclear(ray, cluster, lane, rule))
     }
+}
+
+/// What [`Exact`] does about the few lanes that are not a clear hit; it loads the corners again, so that they
+/// need not be kept.
+#[cold]
+#[inline(never)]
+fn unclear(ray: &Ray, cluster: &Cluster, lane: usize, rule: EdgeRule) -> Option<Intersection> {
+    decide(ray, cluster.triangle(lane), rule)
 }
 
 impl Test for Double {

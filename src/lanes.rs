@@ -8,7 +8,7 @@
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
-use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f64x4, mask32x8};
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f64x4, mask32x8, mask64x4};
 
 /// Lanes in one operation.
 pub(crate) const WIDTH: usize = 8;
@@ -52,7 +52,14 @@ pub(crate) trait Lanes: Copy {
     fn bits(self, mask: Self::Mask) -> u32;
 
     /// Four f64 values.
-    type F64: Copy + Sub<Output = Self::F64> + Mul<Output = Self::F64>;
+    type F64: Copy
+        + Add<Output = Self::F64>
+        + Sub<Output = Self::F64>
+        + Mul<Output = Self::F64>
+        + Div<Output = Self::F64>
+        + Neg<Output = Self::F64>;
+    /// Four truth values.
+    type Mask4: Copy + BitAnd<Output = Self::Mask4>;
 
     /// The same f64 in four lanes.
     fn splat4(self, x: f64) -> Self::F64;
@@ -60,8 +67,22 @@ pub(crate) trait Lanes: Copy {
     fn load4(self, x: &[f64; 4]) -> Self::F64;
     /// The four f64.
     fn store4(self, x: Self::F64) -> [f64; 4];
-    /// a where `below` < a, else b; and where it is a, as bits.
-    fn select_above4(self, below: Self::F64, a: Self::F64, b: Self::F64) -> (Self::F64, u32);
+    /// The absolute values.
+    fn abs4(self, x: Self::F64) -> Self::F64;
+    /// The lesser values; unspecified where one is NaN.
+    fn min4(self, a: Self::F64, b: Self::F64) -> Self::F64;
+    /// The greater values; unspecified where one is NaN.
+    fn max4(self, a: Self::F64, b: Self::F64) -> Self::F64;
+    /// The least of the values; unspecified where one is NaN.
+    fn least4(self, x: Self::F64) -> f64;
+    /// The greatest of the values; unspecified where one is NaN.
+    fn greatest4(self, x: Self::F64) -> f64;
+    /// Where a < b; false where one is NaN.
+    fn less4(self, a: Self::F64, b: Self::F64) -> Self::Mask4;
+    /// a where the mask is true, else b.
+    fn select4(self, mask: Self::Mask4, a: Self::F64, b: Self::F64) -> Self::F64;
+    /// The mask as bits, lane 0 lowest.
+    fn bits4(self, mask: Self::Mask4) -> u32;
 }
 
 /// The values for the three axes.
@@ -132,6 +153,7 @@ impl<S: Simd> Lanes for Dispatched<S> {
     }
 
     type F64 = f64x4<S>;
+    type Mask4 = mask64x4<S>;
 
     #[inline(always)]
     fn splat4(self, x: f64) -> f64x4<S> {
@@ -146,22 +168,68 @@ impl<S: Simd> Lanes for Dispatched<S> {
         x.into()
     }
     #[inline(always)]
-    fn select_above4(self, below: f64x4<S>, a: f64x4<S>, b: f64x4<S>) -> (f64x4<S>, u32) {
-        let above = below.simd_lt(a);
-        (above.select(a, b), above.to_bitmask() as u32)
+    fn abs4(self, x: f64x4<S>) -> f64x4<S> {
+        x.abs()
+    }
+    #[inline(always)]
+    fn min4(self, a: f64x4<S>, b: f64x4<S>) -> f64x4<S> {
+        a.min(b)
+    }
+    #[inline(always)]
+    fn max4(self, a: f64x4<S>, b: f64x4<S>) -> f64x4<S> {
+        a.max(b)
+    }
+    #[inline(always)]
+    fn least4(self, x: f64x4<S>) -> f64 {
+        x.reduce_min()
+    }
+    #[inline(always)]
+    fn greatest4(self, x: f64x4<S>) -> f64 {
+        x.reduce_max()
+    }
+    #[inline(always)]
+    fn less4(self, a: f64x4<S>, b: f64x4<S>) -> mask64x4<S> {
+        a.simd_lt(b)
+    }
+    #[inline(always)]
+    fn select4(self, mask: mask64x4<S>, a: f64x4<S>, b: f64x4<S>) -> f64x4<S> {
+        mask.select(a, b)
+    }
+    #[inline(always)]
+    fn bits4(self, mask: mask64x4<S>) -> u32 {
+        mask.to_bitmask() as u32
     }
 }
 
 /// Runs `$body` with `$lanes` bound to the lanes of the instruction set `$isa`.
 macro_rules! dispatch {
     ($isa:expr, $lanes:ident => $body:expr) => {
-        fearless_simd::dispatch!($isa.level(), simd => {
-            let $lanes = $crate::lanes::Dispatched(simd);
-            $body
-        })
+        match $isa.level() {
+            // The others are compiled into the caller, where they would make all pay for their registers.
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            fearless_simd::Level::Avx2(simd) => $crate::lanes::dispatch!(@ simd, $lanes => $body),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            fearless_simd::Level::Avx512(simd) => $crate::lanes::dispatch!(@ simd, $lanes => $body),
+            level => $crate::lanes::apart(|| {
+                fearless_simd::dispatch!(level, simd => {
+                    let $lanes = $crate::lanes::Dispatched(simd);
+                    $body
+                })
+            }),
+        }
     };
+    (@ $simd:ident, $lanes:ident => $body:expr) => {{
+        let $lanes = $crate::lanes::Dispatched($simd);
+        fearless_simd::Simd::vectorize($simd, #[inline(always)] || $body)
+    }};
 }
 pub(crate) use dispatch;
+
+/// Runs `f` in a function of its own.
+#[inline(never)]
+pub(crate) fn apart<R>(f: impl FnOnce() -> R) -> R {
+    f()
+}
 
 /// An instruction set for the queries. Every one gives the same bits.
 #[derive(Clone, Copy)]
@@ -292,6 +360,7 @@ mod portable {
         }
 
         type F64 = wide::f64x4;
+        type Mask4 = wide::f64x4;
 
         #[inline(always)]
         fn splat4(self, x: f64) -> wide::f64x4 {
@@ -306,9 +375,36 @@ mod portable {
             x.into()
         }
         #[inline(always)]
-        fn select_above4(self, below: wide::f64x4, a: wide::f64x4, b: wide::f64x4) -> (wide::f64x4, u32) {
-            let above = below.simd_lt(a);
-            (above.select(a, b), above.to_bitmask())
+        fn abs4(self, x: wide::f64x4) -> wide::f64x4 {
+            x.abs()
+        }
+        #[inline(always)]
+        fn min4(self, a: wide::f64x4, b: wide::f64x4) -> wide::f64x4 {
+            a.min(b)
+        }
+        #[inline(always)]
+        fn max4(self, a: wide::f64x4, b: wide::f64x4) -> wide::f64x4 {
+            a.max(b)
+        }
+        #[inline(always)]
+        fn least4(self, x: wide::f64x4) -> f64 {
+            x.to_array().into_iter().fold(f64::INFINITY, f64::min)
+        }
+        #[inline(always)]
+        fn greatest4(self, x: wide::f64x4) -> f64 {
+            x.to_array().into_iter().fold(f64::NEG_INFINITY, f64::max)
+        }
+        #[inline(always)]
+        fn less4(self, a: wide::f64x4, b: wide::f64x4) -> wide::f64x4 {
+            a.simd_lt(b)
+        }
+        #[inline(always)]
+        fn select4(self, mask: wide::f64x4, a: wide::f64x4, b: wide::f64x4) -> wide::f64x4 {
+            mask.select(a, b)
+        }
+        #[inline(always)]
+        fn bits4(self, mask: wide::f64x4) -> u32 {
+            mask.to_bitmask()
         }
     }
 }
@@ -328,8 +424,13 @@ mod tests {
             (lanes.min(lanes.load(&b), lanes.splat(1.0)), lanes.max(lanes.load(&b), lanes.splat(1.0)));
         assert_eq!(lanes.bits(lanes.less(low, high)), 0b1111_0111);
         let (a, b) = (lanes.load4(&[1.0, 2.0, 3.0, f64::NAN]), lanes.splat4(9.0));
-        let (selected, bits) = lanes.select_above4(lanes.splat4(1.5), a, b);
-        assert_eq!((lanes.store4(selected), bits), ([9.0, 2.0, 3.0, 9.0], 0b0110));
+        let above = lanes.less4(lanes.splat4(1.5), a);
+        assert_eq!(lanes.store4(lanes.select4(above, a, b)), [9.0, 2.0, 3.0, 9.0]);
+        assert_eq!(lanes.bits4(above), 0b0110);
+        let (a, b) = (lanes.load4(&[1.0, -2.0, -0.0, 4.0]), lanes.splat4(0.5));
+        assert_eq!(lanes.store4(lanes.min4(a, b)), [0.5, -2.0, -0.0, 0.5]);
+        assert_eq!(lanes.store4(lanes.max4(lanes.abs4(a), b)), [1.0, 2.0, 0.5, 4.0]);
+        assert_eq!((lanes.least4(a), lanes.greatest4(a)), (-2.0, 4.0));
     }
 
     #[test]

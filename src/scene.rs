@@ -141,9 +141,7 @@ impl Scene {
     /// ```
     pub fn clusters_along(&self, ray: &Ray, each: impl FnMut(&Cluster) -> ControlFlow<()>) {
         let mut clusters = Each { arena: &self.arena, t_max: ray.t_max, each };
-        if ray.is_valid() {
-            traverse::visit(self.options.isa, &self.arena, self.walk(), ray, &mut clusters);
-        }
+        traverse::visit(self.options.isa, &self.arena, self.walk(), ray, &mut clusters);
     }
 
     fn walk(&self) -> Walk {

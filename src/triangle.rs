@@ -48,18 +48,23 @@ pub struct Intersection {
 /// ```
 #[inline(always)]
 pub fn intersect(ray: &Ray, corners: [Vec3; 3], rule: EdgeRule) -> Option<Intersection> {
-    let rounded = Rounded::new(ray, corners);
     // What is clearly inside is what nearly all calls are about.
-    let found = if rounded.is_inside() { rounded.intersection() } else { None };
-    let found = if found.is_some() { found } else { decide(&rounded, ray, corners, rule) };
-    found.filter(|at| at.t.is_finite())
+    clear_hit(ray, corners).or_else(|| decide(ray, corners, rule))
 }
 
-/// Decides what is not a clear hit.
+/// The hit, where f64 shows that it is one and what its t is.
+#[inline(always)]
+pub(crate) fn clear_hit(ray: &Ray, corners: [Vec3; 3]) -> Option<Intersection> {
+    let rounded = Rounded::new(ray, corners);
+    if rounded.is_inside() { rounded.intersection() } else { None }
+}
+
+/// Decides on what is not a clear hit.
 #[cold]
 #[inline(never)]
-fn decide(rounded: &Rounded, ray: &Ray, corners: [Vec3; 3], rule: EdgeRule) -> Option<Intersection> {
-    if rounded.is_outside() { None } else { decide_exact(ray, corners, rule) }
+pub(crate) fn decide(ray: &Ray, corners: [Vec3; 3], rule: EdgeRule) -> Option<Intersection> {
+    let outside = Rounded::new(ray, corners).is_outside();
+    if outside { None } else { decide_exact(ray, corners, rule).filter(|at| at.t.is_finite()) }
 }
 
 /// A triangle and a line in f64, with the bounds of the rounding errors.
@@ -106,8 +111,9 @@ impl Rounded {
     #[inline(always)]
     fn is_inside(&self) -> bool {
         const PRECISE: f64 = 1.0 / (1u64 << 26) as f64;
-        let [w0, w1, w2] = self.w;
-        w0.min(w1).min(w2) > self.w_bounds[0] && self.w_bounds[0] <= self.det * PRECISE
+        let ([w0, w1, w2], bound) = (self.w, self.w_bounds[0]);
+        // Without short cuts: one branch.
+        (w0 > bound) & (w1 > bound) & (w2 > bound) & (bound <= self.det * PRECISE)
     }
 
     /// Certainly.
@@ -115,7 +121,7 @@ impl Rounded {
         self.det > self.det_bound && (0..3).any(|i| self.w[i] < -self.w_bounds[i])
     }
 
-    /// Where what is inside is met; `None` where the error of t leaves a doubt.
+    /// Where what is inside is met; `None` where the error of t leaves a doubt, or where it is no f32.
     #[inline(always)]
     fn intersection(&self) -> Option<Intersection> {
         let inverse = 1.0 / self.det;
@@ -125,7 +131,7 @@ impl Rounded {
         let rounded = (t - error) as f32;
         let [_, w1, w2] = self.w;
         let at = Intersection { t: rounded + 0.0, u: (w1 * inverse) as f32, v: (w2 * inverse) as f32 };
-        (rounded == (t + error) as f32).then_some(at)
+        ((rounded == (t + error) as f32) & (rounded.abs() <= f32::MAX)).then_some(at)
     }
 }
 
@@ -177,14 +183,13 @@ fn perturbed_side(d: &[Difference; 3], edge: &[Difference; 3]) -> f64 {
 /// Lanes of three-component vectors.
 pub(crate) type Vec3Lanes<L> = [<L as Lanes>::F32; 3];
 
-/// A ray, or eight of them, as [`candidates`] takes it.
-///
-/// The direction is scaled by a power of two so that its largest component lies in [0.5, 1), and the
-/// interval with it.
+/// A ray, or eight of them, as [`candidates`] takes it: scaled by [`Scale`].
 #[derive(Clone, Copy)]
 pub(crate) struct RayLanes<L: Lanes> {
     pub(crate) origin: Vec3Lanes<L>,
     pub(crate) dir: Vec3Lanes<L>,
+    /// 16 times the largest absolute component of the direction.
+    bound: L::F32,
     pub(crate) t_min: L::F32,
     pub(crate) t_max: L::F32,
 }
@@ -193,11 +198,19 @@ impl<L: Lanes> RayLanes<L> {
     /// One ray in all lanes.
     #[inline(always)]
     pub(crate) fn splat(lanes: L, ray: &Ray, scale: Scale) -> Self {
+        let scaled;
+        let ray = if scale.factor == 1.0 {
+            ray
+        } else {
+            scaled = scale.scaled(ray);
+            &scaled
+        };
         Self {
             origin: splat(lanes, ray.origin),
-            dir: splat(lanes, scale.direction(ray.dir)),
-            t_min: lanes.splat(scale.time_below(ray.t_min)),
-            t_max: lanes.splat(scale.time(ray.t_max)),
+            dir: splat(lanes, ray.dir),
+            bound: lanes.splat(16.0 * steepest(ray.dir)),
+            t_min: lanes.splat(ray.t_min),
+            t_max: lanes.splat(ray.t_max),
         }
     }
 }
@@ -207,15 +220,22 @@ impl<L: Lanes> RayLanes<L> {
     #[inline(always)]
     pub(crate) fn gather(lanes: L, packet: &RayPacket) -> Self {
         let rays: [Ray; WIDTH] = std::array::from_fn(|lane| packet.get(lane));
-        let scales = rays.map(|ray| Scale::of(ray.dir));
-        let load = |f: &dyn Fn(usize) -> f32| lanes.load(&std::array::from_fn(f));
+        let rays = rays.map(|ray| Scale::of(ray.dir).scaled(&ray));
+        let load = |f: &dyn Fn(&Ray) -> f32| lanes.load(&std::array::from_fn(|i| f(&rays[i])));
         Self {
-            origin: std::array::from_fn(|axis| load(&|i| rays[i].origin[axis])),
-            dir: std::array::from_fn(|axis| load(&|i| scales[i].direction(rays[i].dir)[axis])),
-            t_min: load(&|i| scales[i].time_below(rays[i].t_min)),
-            t_max: load(&|i| scales[i].time(rays[i].t_max)),
+            origin: std::array::from_fn(|axis| load(&|ray| ray.origin[axis])),
+            dir: std::array::from_fn(|axis| load(&|ray| ray.dir[axis])),
+            bound: load(&|ray| 16.0 * steepest(ray.dir)),
+            t_min: load(&|ray| ray.t_min),
+            t_max: load(&|ray| ray.t_max),
         }
     }
+}
+
+/// The largest absolute component of a direction.
+#[inline(always)]
+fn steepest(dir: Vec3) -> f32 {
+    dir.abs().max_element()
 }
 
 impl RayPacket {
@@ -239,7 +259,8 @@ impl RayPacket {
     }
 }
 
-/// The power of two by which [`RayLanes`] scales a direction.
+/// The power of two by which [`RayLanes`] scales a direction: 1 where its largest component lies in
+/// [0.5, 2^32], else so that it comes to lie in [0.5, 1). The interval is scaled with it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scale {
     factor: f64,
@@ -251,28 +272,38 @@ impl Scale {
     /// The scale for a direction that is finite and not zero.
     #[inline(always)]
     pub(crate) fn of(dir: Vec3) -> Self {
-        let exponent = (f64::from(dir.abs().max_element()).to_bits() >> 52) as i64 - 1022;
+        const MOST: f32 = (1u64 << 32) as f32;
+        let steepest = steepest(dir);
+        let fits = (steepest >= 0.5) & (steepest <= MOST);
+        if fits { Self { factor: 1.0, inverse: 1.0 } } else { Self::to_one(steepest) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn to_one(steepest: f32) -> Self {
+        let exponent = (f64::from(steepest).to_bits() >> 52) as i64 - 1022;
         let power = |exponent: i64| f64::from_bits(((1023 + exponent) as u64) << 52);
         Self { factor: power(-exponent), inverse: power(exponent) }
     }
 
-    /// The scaled direction.
+    /// The scaled ray. The interval grows by an ulp or two; what is finite stays so.
     #[inline(always)]
-    pub(crate) fn direction(self, dir: Vec3) -> Vec3 {
-        (dir.as_dvec3() * self.factor).as_vec3()
+    fn scaled(self, ray: &Ray) -> Ray {
+        let dir = (ray.dir.as_dvec3() * self.factor).as_vec3();
+        Ray { dir, t_min: -self.time(-ray.t_min), t_max: self.time(ray.t_max), ..*ray }
     }
 
     /// t in units of the scaled direction, or an ulp or two more; what is finite stays so.
     #[inline(always)]
     pub(crate) fn time(self, t: f32) -> f32 {
-        let above = above(f64::from(t) * self.inverse);
-        if t.is_finite() { above.clamp(f32::MIN, f32::MAX) } else { t }
+        if self.factor == 1.0 { t } else { self.scaled_time(t) }
     }
 
-    /// The same, or an ulp or two less.
-    #[inline(always)]
-    fn time_below(self, t: f32) -> f32 {
-        -self.time(-t)
+    #[cold]
+    #[inline(never)]
+    fn scaled_time(self, t: f32) -> f32 {
+        let above = above(f64::from(t) * self.inverse);
+        if t.is_finite() { above.clamp(f32::MIN, f32::MAX) } else { t }
     }
 
     /// The inverse of [`Scale::time`].
@@ -284,7 +315,7 @@ impl Scale {
 
 /// No less than `x`, and an ulp or two more at most.
 #[inline(always)]
-fn above(x: f64) -> f32 {
+pub(crate) fn above(x: f64) -> f32 {
     const ULP: f64 = f32::EPSILON as f64;
     const LEAST: f64 = f32::from_bits(1) as f64;
     (x + (x.abs() * ULP + LEAST)) as f32
@@ -293,10 +324,11 @@ fn above(x: f64) -> f32 {
 /// The lanes in which the ray may meet the triangle within its interval, as bits.
 ///
 /// Never misses one that [`intersect`] finds there. The bounds: with A, E, D as in
-/// [`Rounded`], D <= 1 and 2^-24 for 2^-53, the errors of det and w are at most 48 * 2^-24 times
-/// E E and A E, so that 2^-17 E (A + E) covers the w and twice det (whose sign may be the wrong one
-/// within its error); t is compared as t * det. Adding 2^-40 to E covers what underflows; where something
-/// overflows, so does its bound, and infinite and NaN bounds exclude nothing.
+/// [`Rounded`] and 2^-24 for 2^-53, the errors of det and w are at most 48 * 2^-24 times
+/// D E E and D A E, so that 2^-17 D E (A + E) covers the w and twice det (whose sign may be the wrong one
+/// within its error); t is compared as t * det, where D >= 0.5 makes up for e2.q having no D. Adding 2^-40
+/// to E covers what underflows; where something overflows, so does its bound, and infinite and NaN bounds
+/// exclude nothing.
 #[inline(always)]
 pub(crate) fn candidates<L: Lanes>(lanes: L, ray: &RayLanes<L>, [v0, v1, v2]: [Vec3Lanes<L>; 3]) -> u32 {
     let size = |[x, y, z]: Vec3Lanes<L>| lanes.max(lanes.max(lanes.abs(x), lanes.abs(y)), lanes.abs(z));
@@ -309,12 +341,12 @@ pub(crate) fn candidates<L: Lanes>(lanes: L, ray: &RayLanes<L>, [v0, v1, v2]: [V
     let (w1, w2, numerator) = (sign * w1, sign * w2, sign * dot::<Once, L>(lanes, e2, q));
     let a = size(s);
     let e = lanes.max(size(e1), size(e2)) + lanes.splat(2f32.powi(-40));
-    // 16 E (A + E) and 16 E E (A + |t|) are above every intermediate value, so that they overflow first.
+    // 16 D E (A + E) and 16 D E E (A + |t|) are above every intermediate value, so that they overflow first.
     let eps = lanes.splat(2f32.powi(-21));
-    let e16 = lanes.splat(16.0) * e;
-    let ee = e16 * e;
+    let de = ray.bound * e;
+    let ee = de * e;
     let det_slack = eps * ee;
-    let slack = lanes.mul_add(eps, e16 * a, det_slack);
+    let slack = lanes.mul_add(eps, de * a, det_slack);
     let least = lanes.min(lanes.min(w1, w2), abs - (w1 + w2));
     let outside = lanes.less(least + slack, lanes.splat(0.0));
     let (eea, tiny) = (ee * a, lanes.splat(2f32.powi(-97)) * e);
@@ -433,8 +465,9 @@ mod tests {
     #[test]
     fn scale_keeps_what_it_can() {
         for x in [1e-45f32, 1e-30, 0.3, 1.0, 7.0, 3e38] {
-            let scaled = Scale::of(Vec3::new(0.0, -x, x * 0.1)).direction(Vec3::new(0.0, -x, 0.0)).y;
-            assert!((0.5..1.0).contains(&-scaled), "{x}: {scaled}");
+            let dir = Vec3::new(0.0, -x, x * 0.1);
+            let scaled = Scale::of(dir).scaled(&Ray::new([0.0; 3], dir)).dir;
+            assert!((0.5..8.0).contains(&-scaled.y), "{x}: {scaled}");
         }
         let scale = Scale::of(Vec3::new(1e-30, 0.0, 0.0));
         assert_eq!(scale.time(f32::INFINITY), f32::INFINITY);

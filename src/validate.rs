@@ -128,12 +128,11 @@ pub(crate) fn validate(arena: &Arena, triangles: usize) -> Result<Statistics, Vi
 }
 
 fn check_grid(arena: &Arena) -> Result<(), Violation> {
-    let Grid { lo, cell, dims, padding } = arena.grid;
+    let Grid { lo, cell, dims, .. } = arena.grid;
     let len = dims.iter().try_fold(1u32, |len, &n| len.checked_mul(n)).unwrap_or(0);
     require!(len > 0 && len as usize <= arena.words.len(), "the top grid of {dims:?} exceeds the words");
     require!(cell > 0.0 && cell.is_finite(), "the cell is {cell}");
     require!(lo.iter().all(|x| x.is_finite()), "the lower corner is {lo:?}");
-    require!(padding == 0, "padding of the grid");
     let foreign = match arena.form {
         Form::Lists { .. } => arena.bricks.len() + arena.groups.len(),
         Form::Bricks => arena.references.len(),

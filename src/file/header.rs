@@ -18,6 +18,16 @@ pub(crate) struct Section {
     padding: u32,
 }
 
+/// The top grid.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct GridRecord {
+    lo: [f64; 3],
+    cell: f64,
+    dims: [u32; 3],
+    padding: u32,
+}
+
 /// The first bytes of a file; the table is that of [`Scene::save`](crate::Scene::save).
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
@@ -27,7 +37,7 @@ pub(crate) struct Header {
     kind: u32,
     params: [u32; 8],
     triangles: u64,
-    pub(super) grid: Grid,
+    grid: GridRecord,
     pub(crate) sections: [Section; 5],
     padding: u32,
     checksum: u32,
@@ -46,6 +56,7 @@ impl Header {
     pub(super) fn new(structure: &Structure, triangles: usize, arena: &Arena, sections: [&[u8]; 5]) -> Self {
         debug_assert_eq!(form(structure), arena.form);
         let (kind, params) = encode(structure);
+        let Grid { lo, cell, dims, .. } = arena.grid;
         let section = |i: usize| Section {
             items: (sections[i].len() / Self::ITEM_BYTES[i]) as u64,
             checksum: crc32fast::hash(sections[i]),
@@ -57,7 +68,7 @@ impl Header {
             kind,
             params,
             triangles: triangles as u64,
-            grid: arena.grid,
+            grid: GridRecord { lo, cell, dims, padding: 0 },
             sections: std::array::from_fn(section),
             padding: 0,
             checksum: 0,
@@ -81,6 +92,11 @@ impl Header {
         crc32fast::hash(&bytes[..bytes.len() - size_of_val(&self.checksum)])
     }
 
+    /// The top grid, whatever its numbers.
+    pub(super) fn grid(&self) -> Grid {
+        Grid::new(self.grid.lo, self.grid.cell, self.grid.dims)
+    }
+
     /// The number of triangles of the mesh.
     pub(super) fn triangles(&self) -> Result<usize, Violation> {
         let fits = usize::try_from(self.triangles).ok().filter(|&n| n <= TriMesh::MAX_TRIANGLES);
@@ -94,7 +110,9 @@ impl Header {
             .ok_or_else(|| Violation(format!("structure {} {:?} is unknown", self.kind, self.params)))?;
         let options = BuildOptions { structure, ..Default::default() };
         options.check().map_err(|error| Violation(error.to_string()))?;
-        let zeros = self.padding == 0 && self.sections.iter().all(|section| section.padding == 0);
+        let zeros = self.padding == 0
+            && self.grid.padding == 0
+            && self.sections.iter().all(|section| section.padding == 0);
         // Its walk starts in the one voxel.
         let one = !matches!(structure, Structure::Octree(_)) || self.grid.dims == [1; 3];
         match (zeros, one) {

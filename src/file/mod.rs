@@ -107,7 +107,7 @@ impl Scene {
         let structure = header.structure().map_err(LoadError::Invalid)?;
         let [clusters, words, references, bricks, groups] = header.sections;
         let arena = Arena {
-            grid: header.grid,
+            grid: header.grid(),
             form: header::form(&structure),
             clusters: source.section("clusters", &clusters)?,
             words: source.section("voxels", &words)?,

@@ -116,7 +116,8 @@ pub(crate) fn mirror(mut mask: u64, octant: u32) -> u64 {
 /// What to XOR a mirrored index with.
 #[inline(always)]
 pub(crate) fn mirror_index(octant: u32) -> u32 {
-    (0..3).map(|axis| ((octant >> axis & 1) * 3) << (2 * axis)).sum()
+    const BITS: [u32; 8] = [0o00, 0o03, 0o14, 0o17, 0o60, 0o63, 0o74, 0o77];
+    BITS[octant as usize & 7]
 }
 
 #[cfg(test)]

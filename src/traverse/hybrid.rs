@@ -14,44 +14,58 @@ use std::ops::ControlFlow;
 
 use super::brick::{BrickPath, mirror, mirror_index};
 use super::{Visit, Walker};
-use crate::arena::{Arena, BRICK_LEVELS, BoxGroup, Voxel};
-use crate::dda::{Dda, Limit, Path, signed_strides};
+use crate::arena::{Arena, BRICK_LEVELS, BoxGroup, Voxel, VoxelWord};
+use crate::dda::{Clock, Dda, Limit, Path};
 use crate::lanes::{Lanes, axes};
-use crate::triangle::Vec3Lanes;
+use crate::triangle::{Vec3Lanes, above};
 
 /// The walk.
 pub(crate) struct Hybrid;
 
 impl Walker for Hybrid {
     #[inline(always)]
-    fn walk<L: Lanes, V: Visit>(lanes: L, arena: &Arena, path: &Path, visit: &mut V) -> ControlFlow<()> {
-        let strides = signed_strides(arena.grid.strides(), path.octant);
-        let mut dda = Dda::new(path, &arena.grid);
-        let mut cells = Cells::new(lanes, arena, path, visit);
+    fn walk<L: Lanes, V: Visit>(lanes: L, arena: &Arena, path: &Path<L>, visit: &mut V) -> ControlFlow<()> {
+        let (mut dda, steps) = Dda::new(lanes, path, &arena.grid);
+        let mut cells = Cells::new(lanes, arena, path, steps.end, visit);
         loop {
-            cells.visit.enter();
-            let word = &arena.words[dda.voxel as usize];
-            cells.visit.read(word);
+            // A loop of its own for empty voxels, which need few registers.
+            let word = loop {
+                cells.visit.enter();
+                // A path that starts where it leaves the grid may step out of it.
+                let Some(word) = arena.words.get(dda.voxel as usize) else {
+                    return ControlFlow::Continue(());
+                };
+                cells.visit.read(word);
+                if *word != VoxelWord::EMPTY {
+                    break word;
+                }
+                if !dda.advance(cells.limit.time, &steps) {
+                    return ControlFlow::Continue(());
+                }
+            };
             match word.get() {
                 Voxel::Empty => {}
                 Voxel::Leaf(first) => cells.groups(first)?,
                 Voxel::Node(brick) => {
-                    let enter = axes(|axis| (dda.exit[axis] - path.width[axis]) as f32);
-                    cells
-                        .descend(brick, BrickPath::new(enter, axes(|axis| 0.25 * path.width[axis] as f32)))?;
+                    let enter = axes(|axis| (dda.exit[axis] - steps.width[axis]) as f32);
+                    cells.descend(
+                        brick,
+                        BrickPath::new(enter, axes(|axis| 0.25 * steps.width[axis] as f32)),
+                    )?;
                 }
             }
-            if !dda.advance(cells.limit.time, &path.width, &strides) {
+            if !dda.advance(cells.limit.time, &steps) {
                 return ControlFlow::Continue(());
             }
         }
     }
 }
 
-/// The time of the limit, rounded up, and finite: boxes of no cluster are met at infinity.
+/// The time of the limit, rounded up. It is finite, as the path leaves the grid: boxes of no cluster are met
+/// at infinity.
 #[inline(always)]
 fn last(limit: Limit) -> f32 {
-    (limit.time as f32).next_up().min(f32::MAX)
+    above(limit.time)
 }
 
 /// A brick on the stack: its voxels that are still to be visited.
@@ -66,7 +80,8 @@ struct Frame {
 struct Cells<'a, L: Lanes, V> {
     lanes: L,
     arena: &'a Arena,
-    path: &'a Path,
+    octant: u32,
+    clock: Clock,
     visit: &'a mut V,
     limit: Limit,
     /// [`last`] of the limit.
@@ -79,34 +94,27 @@ struct Cells<'a, L: Lanes, V> {
 
 impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
     #[inline(always)]
-    fn new(lanes: L, arena: &'a Arena, path: &'a Path, visit: &'a mut V) -> Self {
-        let mirrored = |axis: usize| path.octant >> axis & 1 != 0;
-        let slope = axes(
-            #[inline(always)]
-            |axis| if mirrored(axis) { -path.width[axis] } else { path.width[axis] },
-        );
-        let delay = axes(
-            #[inline(always)]
-            |axis| {
-                let p = path.origin[axis];
-                -slope[axis] * if mirrored(axis) { f64::from(arena.grid.dims[axis]) - p } else { p }
-            },
-        );
-        let splat = |v: [f64; 3]| {
+    fn new(lanes: L, arena: &'a Arena, path: &Path<L>, end: f64, visit: &'a mut V) -> Self {
+        let slope = lanes.select4(path.mirrored, -path.width, path.width);
+        let dims = lanes.load4(&arena.grid.axes.dims);
+        let delay = -slope * lanes.select4(path.mirrored, dims - path.origin, path.origin);
+        let splat = |v: L::F64| {
+            let v = lanes.store4(v);
             axes(
                 #[inline(always)]
                 |axis| lanes.splat(v[axis] as f32),
             )
         };
-        let limit = Limit::new(path, visit.t_max());
+        let (octant, clock) = (path.octant, path.clock);
+        let limit = Limit::new(clock, end, visit.t_max());
         let (slope, delay) = (splat(slope), splat(delay));
-        Self { lanes, arena, path, visit, last: last(limit), limit, slope, delay }
+        Self { lanes, arena, octant, clock, visit, last: last(limit), limit, slope, delay }
     }
 
     /// Visits the occupied voxels of a brick that the path meets, front to back, and what is below.
     #[inline(always)]
     fn descend(&mut self, brick: u32, times: BrickPath) -> ControlFlow<()> {
-        let flip = mirror_index(self.path.octant);
+        let flip = mirror_index(self.octant);
         let mut frame = self.frame(brick, times);
         let mut stack = [frame; BRICK_LEVELS as usize];
         let mut depth = 0;
@@ -145,31 +153,41 @@ impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
     fn frame(&mut self, index: u32, times: BrickPath) -> Frame {
         let brick = &self.arena.bricks[index as usize];
         self.visit.read(brick);
-        let occupied = mirror(brick.occupied, self.path.octant);
+        let occupied = mirror(brick.occupied, self.octant);
         Frame { brick: index, times, mask: occupied & times.mask(self.lanes, self.last) }
     }
 
     /// Tests the box groups of a leaf from `first` on, and the clusters whose boxes the path meets.
     #[inline(always)]
     fn groups(&mut self, first: u32) -> ControlFlow<()> {
-        for group in &self.arena.groups[first as usize..] {
-            self.visit.read(group);
-            let (start, end) = self.boxes(group);
-            let mut met = self.overlapping(start, end);
+        let mut groups = self.arena.groups[first as usize..].iter();
+        loop {
+            // A loop of its own for groups that are missed, which need few registers.
+            let (group, start, mut met) = loop {
+                let Some(group) = groups.next() else { return ControlFlow::Continue(()) };
+                self.visit.read(group);
+                let (start, end) = self.boxes(group);
+                let met = self.overlapping(start, end);
+                if met != 0 {
+                    break (group, start, met);
+                }
+                if group.clusters[0].is_last() {
+                    return ControlFlow::Continue(());
+                }
+            };
             while met != 0 {
                 let lane = met.trailing_zeros() as usize;
                 met &= met - 1;
                 self.visit.cluster(group.clusters[lane].cluster())?;
-                if self.limit.update(self.path, self.visit.t_max()) {
+                if self.limit.update(self.clock, self.visit.t_max()) {
                     self.last = last(self.limit);
                     met &= self.overlapping(start, self.lanes.splat(self.last));
                 }
             }
             if group.clusters[0].is_last() {
-                break;
+                return ControlFlow::Continue(());
             }
         }
-        ControlFlow::Continue(())
     }
 
     /// When the path enters and leaves eight boxes, from time 0 to the limit.

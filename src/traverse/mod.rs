@@ -56,7 +56,7 @@ fn list<V: Visit>(arena: &Arena, first: u32, visit: &mut V) -> ControlFlow<()> {
 /// A walk through one kind of structure.
 pub(crate) trait Walker {
     /// Visits the voxels along a path. It ends by running out of voxels or by `Break`.
-    fn walk<L: Lanes, V: Visit>(lanes: L, arena: &Arena, path: &Path, visit: &mut V) -> ControlFlow<()>;
+    fn walk<L: Lanes, V: Visit>(lanes: L, arena: &Arena, path: &Path<L>, visit: &mut V) -> ControlFlow<()>;
 }
 
 /// Runs `$body` with `$walker` as the [`Walker`] of an arena: each in a function of its own, which the
@@ -88,13 +88,11 @@ macro_rules! dispatch_walk {
 #[inline(always)]
 pub(crate) fn query<K: Test, Q: Query>(isa: Isa, arena: &Arena, walk: Walk, ray: &Ray, query: &mut Q) {
     dispatch_walk!(arena, walk, W => dispatch!(isa, lanes => {
-        if ray.is_valid() {
-            along::<W, _, _>(lanes, arena, ray, &mut LeafTest::<_, K, Q>::new(lanes, arena, ray, query));
-        }
+        along::<W, _, _>(lanes, arena, ray, &mut LeafTest::<_, K, Q>::new(lanes, arena, ray, query))
     }));
 }
 
-/// Walks along a valid ray.
+/// Walks along a ray.
 #[inline(always)]
 pub(crate) fn visit<V: Visit>(isa: Isa, arena: &Arena, walk: Walk, ray: &Ray, visit: &mut V) {
     dispatch_walk!(arena, walk, W => dispatch!(isa, lanes => along::<W, _, _>(lanes, arena, ray, visit)));
@@ -102,7 +100,7 @@ pub(crate) fn visit<V: Visit>(isa: Isa, arena: &Arena, walk: Walk, ray: &Ray, vi
 
 #[inline(always)]
 fn along<W: Walker, L: Lanes, V: Visit>(lanes: L, arena: &Arena, ray: &Ray, visit: &mut V) {
-    match Path::clip(ray, &arena.grid) {
+    match Path::clip(lanes, ray, &arena.grid) {
         Clip::Miss => {}
         Clip::Path(path) => {
             // How the walk ended is no news.

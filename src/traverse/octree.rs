@@ -9,7 +9,7 @@ use super::{Visit, Walker, list};
 use crate::arena::{Arena, LIST_LEVELS, Voxel};
 use crate::dda::{Limit, Path};
 use crate::descent::{Halves, first_exit};
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, axes};
 
 /// The root and the levels below it.
 const LEVELS: usize = LIST_LEVELS as usize + 1;
@@ -27,14 +27,16 @@ pub(crate) struct Octree;
 
 impl Walker for Octree {
     #[inline(always)]
-    fn walk<L: Lanes, V: Visit>(lanes: L, arena: &Arena, path: &Path, visit: &mut V) -> ControlFlow<()> {
+    fn walk<L: Lanes, V: Visit>(lanes: L, arena: &Arena, path: &Path<L>, visit: &mut V) -> ControlFlow<()> {
         let rises = !path.octant & 7;
-        let exit = std::array::from_fn(|axis| (1.0 - path.origin[axis]) * path.width[axis]);
-        let mut levels = [Level { part: Halves::whole(exit, path.width), first: 0 }; LEVELS];
+        let exit = lanes.store4((lanes.splat4(1.0) - path.origin) * path.width);
+        let width = lanes.store4(path.width);
+        let root = Halves::whole(axes(|axis| exit[axis]), axes(|axis| width[axis]));
+        let mut levels = [Level { part: root, first: 0 }; LEVELS];
         // The level at hand, and the deepest whose coefficients belong to the voxel at hand.
         let (mut depth, mut valid) = (0, 0);
         let mut time = 0.0;
-        let mut limit = Limit::new(path, visit.t_max());
+        let mut limit = Limit::new(path.clock, f64::INFINITY, visit.t_max());
         loop {
             visit.enter();
             let Level { part, first } = &levels[depth];
@@ -44,7 +46,7 @@ impl Walker for Octree {
                 Voxel::Empty => {}
                 Voxel::Leaf(first) => {
                     list(arena, first, visit)?;
-                    limit.update(path, visit.t_max());
+                    limit.update(path.clock, visit.t_max());
                 }
                 Voxel::Node(first) => {
                     if depth == valid {

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 
 use super::{Visit, Walker, list};
 use crate::arena::{Arena, LIST_LEVELS, Voxel};
-use crate::dda::{Dda, Limit, Path, signed_strides};
+use crate::dda::{Dda, Limit, Path};
 use crate::descent::{General, first_exit};
 use crate::lanes::Lanes;
 
@@ -27,15 +27,14 @@ pub(crate) struct Recursive<const N: u32>;
 
 impl<const N: u32> Walker for Recursive<N> {
     #[inline(always)]
-    fn walk<L: Lanes, V: Visit>(_: L, arena: &Arena, path: &Path, visit: &mut V) -> ControlFlow<()> {
-        let strides = signed_strides(arena.grid.strides(), path.octant);
+    fn walk<L: Lanes, V: Visit>(lanes: L, arena: &Arena, path: &Path<L>, visit: &mut V) -> ControlFlow<()> {
         let rises = !path.octant & 7;
-        let mut top = Dda::new(path, &arena.grid);
-        let mut levels = [Level { part: General::<N>::whole(top.exit, path.width), first: 0 }; LEVELS];
+        let (mut top, steps) = Dda::new(lanes, path, &arena.grid);
+        let mut levels = [Level { part: General::<N>::whole(top.exit, steps.width), first: 0 }; LEVELS];
         // The number of levels below the top, and of those whose coefficients belong to the voxel at hand.
         let (mut depth, mut valid) = (0, 0);
         let mut time = 0.0;
-        let mut limit = Limit::new(path, visit.t_max());
+        let mut limit = Limit::new(path.clock, f64::INFINITY, visit.t_max());
         loop {
             visit.enter();
             let index =
@@ -46,12 +45,12 @@ impl<const N: u32> Walker for Recursive<N> {
                 Voxel::Empty => {}
                 Voxel::Leaf(first) => {
                     list(arena, first, visit)?;
-                    limit.update(path, visit.t_max());
+                    limit.update(path.clock, visit.t_max());
                 }
                 Voxel::Node(first) => {
                     if depth == valid {
                         let whole = match depth {
-                            0 => General::whole(top.exit, path.width),
+                            0 => General::whole(top.exit, steps.width),
                             _ => levels[depth - 1].part,
                         };
                         levels[depth].part = whole.descend(time, rises);
@@ -71,7 +70,7 @@ impl<const N: u32> Walker for Recursive<N> {
             while depth > 0 && !levels[depth - 1].part.step(axis, rises) {
                 depth -= 1;
             }
-            if depth == 0 && !top.step(axis, &path.width, &strides) {
+            if depth == 0 && !top.step(axis, &steps) {
                 return ControlFlow::Continue(());
             }
         }

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::{Visit, Walker, list};
 use crate::arena::{Arena, Voxel};
-use crate::dda::{Dda, Limit, Path, signed_strides};
+use crate::dda::{Dda, Limit, Path};
 use crate::lanes::Lanes;
 
 /// The walk.
@@ -12,19 +12,21 @@ pub(crate) struct Uniform;
 
 impl Walker for Uniform {
     #[inline(always)]
-    fn walk<L: Lanes, V: Visit>(_: L, arena: &Arena, path: &Path, visit: &mut V) -> ControlFlow<()> {
-        let strides = signed_strides(arena.grid.strides(), path.octant);
-        let mut dda = Dda::new(path, &arena.grid);
-        let mut limit = Limit::new(path, visit.t_max());
+    fn walk<L: Lanes, V: Visit>(lanes: L, arena: &Arena, path: &Path<L>, visit: &mut V) -> ControlFlow<()> {
+        let (mut dda, steps) = Dda::new(lanes, path, &arena.grid);
+        let mut limit = Limit::new(path.clock, steps.end, visit.t_max());
         loop {
             visit.enter();
-            let word = &arena.words[dda.voxel as usize];
+            // A path that starts where it leaves the grid may step out of it.
+            let Some(word) = arena.words.get(dda.voxel as usize) else {
+                return ControlFlow::Continue(());
+            };
             visit.read(word);
             if let Voxel::Leaf(first) = word.get() {
                 list(arena, first, visit)?;
-                limit.update(path, visit.t_max());
+                limit.update(path.clock, visit.t_max());
             }
-            if !dda.advance(limit.time, &path.width, &strides) {
+            if !dda.advance(limit.time, &steps) {
                 return ControlFlow::Continue(());
             }
         }

@@ -1,206 +1,124 @@
 //! Clustering: triangles into groups of up to eight neighbours.
 //!
-//! Recursive binary splits of the triangles at the cheapest of 16 planes an axis (binned surface area
-//! heuristic: I. Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007), where
-//! the cost of a side is its area times the number of clusters that it fills. Coplanar neighbours come
-//! together, as a flat box has the least area. O(n log n), in parallel, in place.
+//! ```text
+//! arrange(triangles): sort them into the cells of a grid
+//!                     split the cells into runs of few triangles
+//!                     arrange(the triangles of a cell) where there are still many
+//! then split each run into clusters
+//! ```
+//!
+//! Both splits are by the surface area heuristic ([`super::sah`]). Coplanar neighbours come together, as a
+//! flat box has the least area. That the first split is of cells, not of triangles, spares most of
+//! O(n log n) and changes little: few triangles lie near a boundary between runs.
 
-use glam::{Vec3, Vec4};
+use std::ops::Range;
+
+use glam::{UVec3, Vec3};
 
 use super::analysis::Analysis;
+use super::grid;
+use super::sah::{self, Member};
 use crate::aabb::Aabb;
 use crate::cluster::Cluster;
 use crate::lanes::WIDTH;
 use crate::mesh::TriMesh;
 use crate::parallel;
 
-const BINS: usize = 16;
+/// Triangles in a run, where cells allow it.
+const RUN: usize = 64;
 
 /// Gathers the triangles of the analysis into clusters, neighbours near each other.
 ///
 /// The same for any number of threads.
 pub(crate) fn clusters(mesh: &TriMesh<'_>, analysis: &Analysis) -> Vec<Cluster> {
-    let mut members: Vec<Member> = (0..).zip(&analysis.boxes).map(|(i, b)| Member::new(i, b)).collect();
-    let mut ends = vec![false; members.len()];
-    split(&mut members, &mut ends, 0);
-    let mut start = 0;
-    let runs: Vec<&[Member]> = (1..=members.len())
-        .filter(|&end| ends[end - 1])
-        .map(|end| &members[std::mem::replace(&mut start, end)..end])
+    let boxes = &analysis.boxes;
+    let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+    let mut ends = vec![false; order.len()];
+    arrange(boxes, &mut order, &mut ends);
+    parallel::for_each(runs_mut(&mut order, &mut ends), |(run, ends)| {
+        let mut members: Vec<Member> = run.iter().map(|&i| Member::new(i, &boxes[i as usize])).collect();
+        sah::split(&mut members, ends, &|_: &Member| 1, WIDTH);
+        run.iter_mut().zip(&members).for_each(|(i, member)| *i = member.index());
+    });
+    let runs = runs_mut(&mut order, &mut ends);
+    parallel::map(&runs, |(run, _)| gather(mesh, analysis, run))
+}
+
+/// The parts of `order` up to each of the `ends`, with their ends.
+fn runs_mut<'a>(mut order: &'a mut [u32], mut ends: &'a mut [bool]) -> Vec<(&'a mut [u32], &'a mut [bool])> {
+    let mut runs = Vec::new();
+    while let Some(last) = ends.iter().position(|&end| end) {
+        let (run, others) = order.split_at_mut(last + 1);
+        let (run_ends, other_ends) = ends.split_at_mut(last + 1);
+        runs.push((run, run_ends));
+        (order, ends) = (others, other_ends);
+    }
+    runs
+}
+
+/// Orders triangles by runs of neighbours and marks the last of each run.
+fn arrange(boxes: &[Aabb], order: &mut [u32], ends: &mut [bool]) {
+    const CROWDED: usize = 1024;
+    let (cells, sorted) = sort_by_cell(boxes, order);
+    let mut groups: Vec<Member> = (0..)
+        .zip(&cells)
+        .map(|(i, cell)| {
+            let all = sorted[cell.clone()].iter().map(|&i| boxes[i as usize]);
+            Member::new(i, &all.fold(Aabb::EMPTY, Aabb::union))
+        })
         .collect();
-    parallel::map(&runs, |run| gather(mesh, analysis, run))
-}
-
-fn gather(mesh: &TriMesh<'_>, analysis: &Analysis, members: &[Member]) -> Cluster {
-    let mut triangles = [(u32::MAX, [Vec3::ZERO; 3]); WIDTH];
-    for (slot, member) in triangles.iter_mut().zip(members) {
-        let id = analysis.triangles[member.index() as usize];
-        *slot = (id, mesh.corners(id));
-    }
-    let triangles = &mut triangles[..members.len()];
-    triangles.sort_unstable_by_key(|(id, _)| *id);
-    Cluster::new(triangles)
-}
-
-/// A triangle's box and index.
-///
-/// The fourth lanes hold the halves of the index as whole numbers: arithmetic on all four lanes is one
-/// instruction, and slow where one is subnormal.
-#[derive(Clone, Copy)]
-struct Member {
-    lo: Vec4,
-    hi: Vec4,
-}
-
-impl Member {
-    fn new(index: u32, b: &Aabb) -> Self {
-        Self { lo: b.lo.extend((index & 0xffff) as f32), hi: b.hi.extend((index >> 16) as f32) }
-    }
-
-    fn index(&self) -> u32 {
-        self.lo.w as u32 | (self.hi.w as u32) << 16
-    }
-
-    #[inline(always)]
-    fn center(&self) -> Vec4 {
-        self.lo * 0.5 + self.hi * 0.5
-    }
-}
-
-/// Splits until eight are left, and marks the last of them in `ends`; halves where no plane helps or
-/// planes have peeled off little by little.
-fn split(members: &mut [Member], ends: &mut [bool], depth: u32) {
-    const MAX_UNEVEN_DEPTH: u32 = 64;
-    const PARALLEL: usize = 4096;
-    if members.len() <= WIDTH {
-        ends.last_mut().into_iter().for_each(|end| *end = true);
-        return;
-    }
-    let plane =
-        if members.len() < 4 * BINS { cheapest_plane::<8>(members) } else { cheapest_plane::<BINS>(members) };
-    let middle = match plane {
-        Some(plane) if depth < MAX_UNEVEN_DEPTH => partition(members, plane.is_below()),
-        _ => (members.len() / 2).next_multiple_of(WIDTH).min(members.len() - 1),
-    };
-    let (below, above) = members.split_at_mut(middle);
-    let (ends_below, ends_above) = ends.split_at_mut(middle);
-    if below.len().min(above.len()) < PARALLEL {
-        split(below, ends_below, depth + 1);
-        split(above, ends_above, depth + 1);
-    } else {
-        parallel::join(|| split(below, ends_below, depth + 1), || split(above, ends_above, depth + 1));
-    }
-}
-
-/// Bins of the centres along each axis.
-struct Binning {
-    start: Vec4,
-    scale: Vec4,
-}
-
-impl Binning {
-    /// From here on f32 are whole numbers: adding it rounds to the last bits.
-    const WHOLE: f32 = (1u32 << 23) as f32;
-
-    fn new(members: &[Member], bins: usize) -> Self {
-        let (mut lo, mut hi) = (Vec4::MAX, Vec4::MIN);
-        for member in members {
-            let center = member.center();
-            (lo, hi) = (lo.min(center), hi.max(center));
-        }
-        // The outer bins are half as wide.
-        let scale = ((bins - 1) as f32 / (hi - lo)).to_array().map(|x| if x.is_finite() { x } else { 0.0 });
-        Self { start: lo, scale: Vec4::from_array(scale) }
-    }
-
-    /// The bin of a member along each axis, of `N`; the fourth means nothing.
-    #[inline(always)]
-    fn of<const N: usize>(&self, member: &Member) -> [usize; 4] {
-        let place = (member.center() - self.start) * self.scale + Vec4::splat(Self::WHOLE);
-        place.to_array().map(|x| x.to_bits() as usize % N)
-    }
-}
-
-/// A plane between two bins.
-struct Plane {
-    binning: Binning,
-    axis: usize,
-    bin: usize,
-}
-
-impl Plane {
-    /// As a comparison that takes as little as it needs of a member.
-    fn is_below(&self) -> impl Fn(&Member) -> bool + use<> {
-        let (axis, last) = (self.axis, self.bin as f32 + Binning::WHOLE);
-        let (start, scale) = (self.binning.start[axis], self.binning.scale[axis]);
-        move |member| {
-            let center = member.lo[axis] * 0.5 + member.hi[axis] * 0.5;
-            (center - start) * scale + Binning::WHOLE <= last
-        }
-    }
-}
-
-#[derive(Clone, Copy)]
-struct Bin {
-    lo: Vec4,
-    hi: Vec4,
-    count: usize,
-}
-
-impl Bin {
-    const EMPTY: Self = Self { lo: Vec4::MAX, hi: Vec4::MIN, count: 0 };
-
-    #[inline(always)]
-    fn merge(self, other: Self) -> Self {
-        Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi), count: self.count + other.count }
-    }
-
-    #[inline(always)]
-    fn cost(&self) -> f32 {
-        let [x, y, z, _] = (self.hi - self.lo).to_array();
-        if self.count == 0 { 0.0 } else { (x * y + y * z + z * x) * self.count.div_ceil(WIDTH) as f32 }
-    }
-}
-
-/// The cheapest plane that has members on both sides.
-fn cheapest_plane<const N: usize>(members: &[Member]) -> Option<Plane> {
-    let binning = Binning::new(members, N);
-    let mut bins = [[Bin::EMPTY; N]; 3];
-    for member in members {
-        let of = binning.of::<N>(member);
-        for axis in 0..3 {
-            let bin = &mut bins[axis][of[axis]];
-            *bin = bin.merge(Bin { lo: member.lo, hi: member.hi, count: 1 });
-        }
-    }
-    let mut best = (f32::INFINITY, 0, 0);
-    for (axis, bins) in bins.iter().enumerate() {
-        let mut above = [Bin::EMPTY; N];
-        for i in (0..N - 1).rev() {
-            above[i] = above[i + 1].merge(bins[i + 1]);
-        }
-        let mut below = Bin::EMPTY;
-        for i in 0..N - 1 {
-            below = below.merge(bins[i]);
-            let cost = below.cost() + above[i].cost();
-            if cost < best.0 && below.count > 0 && above[i].count > 0 {
-                best = (cost, axis, i);
+    let mut last = vec![false; groups.len()];
+    sah::split(&mut groups, &mut last, &|group: &Member| cells[group.index() as usize].len(), RUN);
+    let (mut start, mut end) = (0, 0);
+    for (group, last) in groups.iter().zip(last) {
+        let cell = &sorted[cells[group.index() as usize].clone()];
+        order[end..end + cell.len()].copy_from_slice(cell);
+        end += cell.len();
+        if last {
+            if end - start > CROWDED && end - start < order.len() {
+                arrange(boxes, &mut order[start..end], &mut ends[start..end]);
             }
+            ends[end - 1] = true;
+            start = end;
         }
     }
-    let (cost, axis, bin) = best;
-    cost.is_finite().then_some(Plane { binning, axis, bin })
 }
 
-/// Moves what is below to the front and returns how many these are.
-fn partition(members: &mut [Member], is_below: impl Fn(&Member) -> bool) -> usize {
-    let mut count = 0;
-    for i in 0..members.len() {
-        let below = is_below(&members[i]);
-        members.swap(i, count);
-        count += usize::from(below);
+/// The triangles sorted by the cell of a grid that their centre is in, and the range of each cell that has
+/// any. Counting sort.
+fn sort_by_cell(boxes: &[Aabb], order: &[u32]) -> (Vec<Range<usize>>, Vec<u32>) {
+    let bounds = Aabb::around(order.iter().map(|&i| boxes[i as usize].center()));
+    let grid = grid::cubic(&bounds, order.len() as f64 / 4.0);
+    let (lo, scale) = (Vec3::from_array(grid.lo.map(|x| x as f32)), (1.0 / grid.cell) as f32);
+    let last = UVec3::from_array(grid.dims) - 1;
+    let cells = parallel::map(order, |&i| {
+        let at = ((boxes[i as usize].center() - lo) * scale).as_uvec3().min(last);
+        at.dot(UVec3::from_array(grid.strides()))
+    });
+    let mut next = vec![0; grid.len()];
+    cells.iter().for_each(|&cell| next[cell as usize] += 1);
+    let mut ranges = Vec::new();
+    let mut start = 0;
+    for count in &mut next {
+        if *count > 0 {
+            ranges.push(start..start + *count);
+        }
+        start += std::mem::replace(count, start);
     }
-    count
+    let mut sorted = vec![0; order.len()];
+    for (&i, &cell) in order.iter().zip(&cells) {
+        sorted[next[cell as usize]] = i;
+        next[cell as usize] += 1;
+    }
+    (ranges, sorted)
+}
+
+fn gather(mesh: &TriMesh<'_>, analysis: &Analysis, run: &[u32]) -> Cluster {
+    let mut ids = [u32::MAX; WIDTH];
+    ids.iter_mut().zip(run).for_each(|(id, &i)| *id = analysis.triangles[i as usize]);
+    ids.sort_unstable();
+    let triangles = ids.map(|id| (id, if id == u32::MAX { [Vec3::ZERO; 3] } else { mesh.corners(id) }));
+    Cluster::new(&triangles[..run.len()])
 }
 
 #[cfg(test)]

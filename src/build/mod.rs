@@ -8,6 +8,7 @@ mod cluster;
 mod grid;
 mod options;
 mod policy;
+mod sah;
 mod split;
 
 pub use options::{

@@ -5,6 +5,7 @@ use glam::{DVec3, Vec3};
 use crate::aabb::Aabb;
 use crate::exact::{self, Difference};
 use crate::mesh::TriMesh;
+use crate::parallel;
 
 /// The triangles that can be hit, and how they lie.
 pub(crate) struct Analysis {
@@ -18,9 +19,17 @@ pub(crate) struct Analysis {
 
 impl Analysis {
     pub(crate) fn new(mesh: &TriMesh<'_>) -> Self {
-        let triangles: Vec<u32> =
-            (0..mesh.len() as u32).filter(|&i| !is_degenerate(mesh.corners(i))).collect();
-        let boxes: Vec<Aabb> = triangles.iter().map(|&i| Aabb::around(mesh.corners(i))).collect();
+        let vertices = mesh.vertices();
+        let mut boxes = parallel::map(mesh.triangles(), |&[a, b, c]| {
+            let corner = |i: u32| Vec3::from_array(vertices[i as usize]);
+            let corners = [corner(a), corner(b), corner(c)];
+            if is_degenerate(corners) { Aabb::EMPTY } else { Aabb::around(corners) }
+        });
+        let mut triangles: Vec<u32> = (0..boxes.len() as u32).collect();
+        if boxes.contains(&Aabb::EMPTY) {
+            triangles.retain(|&i| boxes[i as usize] != Aabb::EMPTY);
+            boxes.retain(|&b| b != Aabb::EMPTY);
+        }
         let bounds = boxes.iter().fold(Aabb::EMPTY, |a, &b| a.union(b));
         Self { triangles, boxes, bounds }
     }
@@ -47,6 +56,13 @@ impl Analysis {
 
 /// Whether the area is exactly zero, so that no ray can hit the triangle.
 fn is_degenerate([v0, v1, v2]: [Vec3; 3]) -> bool {
+    // Where a bound of the rounding errors leaves no doubt: in f32, then in f64.
+    let (e1, e2) = (v1 - v0, v2 - v0);
+    // Multiplied in this order it overflows before any product of theirs.
+    let bound = e1.abs().max_element() * e2.abs().max_element() * (8.0 * f32::EPSILON) + f32::MIN_POSITIVE;
+    if e1.cross(e2).abs().max_element() > bound {
+        return false;
+    }
     let (e1, e2) = (v1.as_dvec3() - v0.as_dvec3(), v2.as_dvec3() - v0.as_dvec3());
     let bound = 8.0 * f64::EPSILON * e1.abs().max_element() * e2.abs().max_element();
     if e1.cross(e2).abs().max_element() > bound {

@@ -116,9 +116,18 @@ fn sort_by_cell(boxes: &[Aabb], order: &[u32]) -> (Vec<Range<usize>>, Vec<u32>) 
 fn gather(mesh: &TriMesh<'_>, analysis: &Analysis, run: &[u32]) -> Cluster {
     let mut ids = [u32::MAX; WIDTH];
     ids.iter_mut().zip(run).for_each(|(id, &i)| *id = analysis.triangles[i as usize]);
+    let ids = &mut ids[..run.len()];
     ids.sort_unstable();
-    let triangles = ids.map(|id| (id, if id == u32::MAX { [Vec3::ZERO; 3] } else { mesh.corners(id) }));
+    let mut triangles = [(u32::MAX, [Vec3::ZERO; 3]); WIDTH];
+    for (slot, &mut id) in triangles.iter_mut().zip(&mut *ids) {
+        let [a, b, c] = mesh.triangles()[id as usize];
+        *slot = (id, [vertex(mesh, a), vertex(mesh, b), vertex(mesh, c)]);
+    }
     Cluster::new(&triangles[..run.len()])
+}
+
+fn vertex(mesh: &TriMesh<'_>, i: u32) -> Vec3 {
+    Vec3::from_array(mesh.vertices()[i as usize])
 }
 
 #[cfg(test)]

@@ -5,11 +5,14 @@
 
 mod analysis;
 mod cluster;
+mod divide;
 mod grid;
 mod options;
+mod piece;
 mod policy;
 mod sah;
 mod split;
+mod voxel;
 
 pub use options::{
     BuildError, BuildOptions, HybridParams, OctreeParams, RecursiveParams, Structure, UniformParams,

@@ -3,12 +3,12 @@
 use super::analysis::{Analysis, planes};
 use super::grid;
 use super::options::{HybridParams, OctreeParams, RecursiveParams, UniformParams};
-use super::split::{Item, VoxelView};
+use super::voxel::{Item, VoxelView};
 use crate::arena::{Form, Grid};
 use crate::mesh::TriMesh;
 
 /// Where to split.
-pub(crate) trait Policy {
+pub(crate) trait Policy: Sync {
     /// The grid on top.
     fn grid(&self) -> Grid;
 
@@ -134,13 +134,6 @@ impl Hybrid {
         let target = f64::from(params.density) * clusters as f64;
         Self { params: *params, grid: grid::cubic(&analysis.bounds, target) }
     }
-
-    /// The chance that a ray through a voxel meets a cluster's box: the ratio of the areas.
-    fn chance(&self, voxel: &VoxelView<'_>, item: &Item) -> f32 {
-        let face = voxel.bounds.extent();
-        let area = face.x * face.y + face.y * face.z + face.z * face.x;
-        (voxel.clipped(item).half_area() / area).min(1.0)
-    }
 }
 
 impl Policy for Hybrid {
@@ -156,9 +149,12 @@ impl Policy for Hybrid {
         voxel.items.len() > crate::lanes::WIDTH && leaf_cost > self.params.brick_cost
     }
 
+    /// A ray through a voxel meets a cluster's box with a chance that is the ratio of the areas.
     fn leaf_cost(&self, voxel: &VoxelView<'_>) -> f32 {
         let groups = voxel.items.len().div_ceil(crate::lanes::WIDTH) as f32;
-        let clusters: f32 = voxel.items.iter().map(|item| self.chance(voxel, item)).sum();
+        let area = voxel.bounds.half_area();
+        let chance = |item: &Item| (item.bounds.half_area() / area).min(1.0);
+        let clusters: f32 = voxel.items.iter().map(chance).sum();
         groups * self.params.group_cost + clusters
     }
 

@@ -1,0 +1,265 @@
+//! Voxels into leaves and divided voxels, one voxel of the top grid after the other.
+//!
+//! ```text
+//! voxel(items):  empty                                    if there are no items
+//!                leaf                                     if the policy does not divide
+//!                divided, each part by voxel(its items)   if that costs less than a leaf
+//! ```
+//!
+//! One work list (`items`, a stack) serves all levels, as does one of where the items of each part start.
+//! Parts are made depth first in the order of their index.
+
+use std::ops::Range;
+
+use super::options::BuildError;
+use super::piece::Piece;
+use super::policy::Policy;
+use super::split::{Limits, sort};
+use super::voxel::{Cube, Item, VoxelView, scatter};
+use crate::aabb::Aabb;
+use crate::arena::{BoxGroup, Brick, Form, Grid, Reference, VoxelWord};
+use crate::cluster::Cluster;
+use crate::lanes::{Lanes, WIDTH};
+
+/// What all voxels have in common.
+pub(super) struct Space<'a, L, P> {
+    pub(super) lanes: L,
+    pub(super) policy: &'a P,
+    pub(super) clusters: &'a [Cluster],
+    pub(super) grid: &'a Grid,
+    pub(super) limits: Limits,
+}
+
+/// Makes a piece.
+pub(super) struct Divider<'a, L, P> {
+    space: &'a Space<'a, L, P>,
+    /// References, beyond which voxels are no longer divided.
+    references: usize,
+    form: Form,
+    /// The margin and the least side, as lengths.
+    margin: f64,
+    least_side: f64,
+    piece: Piece,
+    /// The work list: the items of the voxel at hand above those of the voxels around it.
+    items: Vec<Item>,
+    /// Items with the part of the voxel they are in, before they are sorted by it.
+    parts: Vec<(u32, Item)>,
+    /// Where the items of each part start, for the voxel at hand above those around it.
+    starts: Vec<usize>,
+}
+
+impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
+    pub(super) fn new(space: &'a Space<'a, L, P>, references: usize) -> Self {
+        Self {
+            references,
+            form: space.policy.form(),
+            margin: space.limits.margin_in(space.grid),
+            least_side: space.limits.least_side_in(space.grid),
+            space,
+            piece: Piece::default(),
+            items: Vec::new(),
+            parts: Vec::new(),
+            starts: Vec::new(),
+        }
+    }
+
+    pub(super) fn piece(self) -> Piece {
+        self.piece
+    }
+
+    /// Makes a voxel of the top grid.
+    pub(super) fn top_voxel(&mut self, index: [u32; 3], items: &[Item]) -> Result<(), BuildError> {
+        self.items.extend_from_slice(items);
+        let word = self.voxel(0..items.len(), Cube::of(self.space.grid, index), 0)?.0;
+        self.items.clear();
+        self.piece.top.push(word);
+        Ok(())
+    }
+
+    /// Makes a voxel and returns its word and cost.
+    fn voxel(&mut self, range: Range<usize>, cube: Cube, depth: u32) -> Result<(VoxelWord, f32), BuildError> {
+        if range.is_empty() {
+            return Ok((VoxelWord::EMPTY, 0.0));
+        }
+        let bounds = cube.enlarged(self.margin);
+        let view = VoxelView { items: &self.items[range.clone()], clusters: self.space.clusters, bounds };
+        let leaf_cost = self.space.policy.leaf_cost(&view);
+        let divides = self.may_divide(cube, depth) && self.space.policy.divides(&view, leaf_cost);
+        if divides && self.separates(&view, cube.side) {
+            let mark = self.piece.mark();
+            let divided = self.divide(range.clone(), cube, depth)?;
+            if let Some((word, cost)) = divided
+                && cost < leaf_cost
+            {
+                return Ok((word, cost));
+            }
+            self.piece.roll_back(mark);
+        }
+        Ok((self.leaf(range)?, leaf_cost))
+    }
+
+    fn may_divide(&self, cube: Cube, depth: u32) -> bool {
+        let references = self.piece.references.len() + WIDTH * self.piece.groups.len();
+        depth < self.space.limits.levels
+            && cube.side / f64::from(self.form.divisions()) >= self.least_side
+            && references < self.references
+    }
+
+    /// Whether a triangle is not much larger than the voxel; else smaller voxels would only chase the
+    /// vertex or the edge that all triangles share.
+    fn separates(&self, voxel: &VoxelView<'_>, side: f64) -> bool {
+        let most = 16.0 * side;
+        self.form == Form::Bricks || voxel.extents().any(|extent| f64::from(extent) < most)
+    }
+
+    /// Divides a voxel; `None` where that gains nothing.
+    fn divide(
+        &mut self,
+        range: Range<usize>,
+        cube: Cube,
+        depth: u32,
+    ) -> Result<Option<(VoxelWord, f32)>, BuildError> {
+        let n = self.form.divisions();
+        let parts = Grid::new(cube.lo, cube.side / f64::from(n), [n; 3]);
+        let (floor, start) = (self.items.len(), self.starts.len());
+        self.list_parts(range.clone(), &parts)?;
+        let divided = if self.gains(range) {
+            sort(self.parts.iter(), parts.len(), &mut self.items, &mut self.starts);
+            Some(self.node(&parts, start, depth)?)
+        } else {
+            None
+        };
+        self.items.truncate(floor);
+        self.starts.truncate(start);
+        Ok(divided)
+    }
+
+    /// Makes the parts of a divided voxel, whose items start at `starts[start..]`.
+    fn node(&mut self, parts: &Grid, start: usize, depth: u32) -> Result<(VoxelWord, f32), BuildError> {
+        let n = self.form.divisions();
+        let occupied = |starts: &[usize], i: u32| starts[start + i as usize] < starts[start + i as usize + 1];
+        let count = (0..n.pow(3)).filter(|&i| occupied(&self.starts, i)).count();
+        let mask = match self.form {
+            Form::Lists { .. } => 0,
+            Form::Bricks => (0..64).map(|i| u64::from(occupied(&self.starts, i)) << i).sum(),
+        };
+        let (node, first) = self.reserve(mask)?;
+        let (mut sum, mut rank) = (0.0, 0);
+        for i in 0..n.pow(3) {
+            if !occupied(&self.starts, i) {
+                continue;
+            }
+            let items = self.starts[start + i as usize]..self.starts[start + i as usize + 1];
+            let cube = Cube::of(parts, [i % n, i / n % n, i / n / n]);
+            let (word, cost) = self.voxel(items, cube, depth + 1)?;
+            let slot = if self.form == Form::Bricks { rank } else { i as usize };
+            self.piece.words[first + slot] = word;
+            sum += cost;
+            rank += 1;
+        }
+        Ok((node, self.space.policy.node_cost(sum, count as u32)))
+    }
+
+    /// Lists the items with the parts of the voxel that they overlap.
+    fn list_parts(&mut self, range: Range<usize>, grid: &Grid) -> Result<(), BuildError> {
+        self.parts.clear();
+        let space = self.space;
+        space.lanes.vectorize(
+            #[inline(always)]
+            || {
+                for item in &self.items[range] {
+                    scatter(space.lanes, space.clusters, item, grid, self.margin, |part, item| {
+                        self.parts.push((part, item));
+                    });
+                }
+            },
+        );
+        self.check_memory()
+    }
+
+    /// Whether division spares a ray through the voxel some tests, given that it meets a part with a
+    /// chance of 1 / N^2 (the ratio of the areas).
+    ///
+    /// Without this, a threshold below the number of triangles around a vertex would never be met there,
+    /// and a cost model would look into parts of parts where nothing can be told apart.
+    fn gains(&self, whole: Range<usize>) -> bool {
+        let n = self.form.divisions() as usize;
+        if self.form == Form::Bricks {
+            return self.parts.len() < n * n * whole.len();
+        }
+        let triangles = |item: &Item| item.mask.count_ones() as usize;
+        let parts: usize = self.parts.iter().map(|(_, item)| triangles(item)).sum();
+        let whole: usize = self.items[whole].iter().map(triangles).sum();
+        // About 3 N / 2 steps lead through the parts, each as dear as a test.
+        parts + n * n * (3 * n / 2) < n * n * whole
+    }
+
+    /// Makes room for the parts of a divided voxel: its word, and the index of the first part's.
+    fn reserve(&mut self, occupied: u64) -> Result<(VoxelWord, usize), BuildError> {
+        let piece = &mut self.piece;
+        let first = piece.words.len();
+        let node = match self.form {
+            Form::Lists { divisions } => {
+                piece.words.resize(first + divisions.pow(3) as usize, VoxelWord::EMPTY);
+                VoxelWord::node(first)
+            }
+            Form::Bricks => {
+                piece.words.resize(first + occupied.count_ones() as usize, VoxelWord::EMPTY);
+                let first = u32::try_from(first).map_err(|_| BuildError::TooLarge { what: "voxels" })?;
+                piece.bricks.push(Brick { occupied, first, padding: 0 });
+                VoxelWord::node(piece.bricks.len() - 1)
+            }
+        };
+        self.check_memory()?;
+        Ok((node.ok_or(BuildError::TooLarge { what: "voxels" })?, first))
+    }
+
+    fn leaf(&mut self, range: Range<usize>) -> Result<VoxelWord, BuildError> {
+        let items = &self.items[range];
+        let word = match self.form {
+            Form::Lists { .. } => {
+                let references = &mut self.piece.references;
+                let word = VoxelWord::leaf(references.len());
+                let last = items.len() - 1;
+                references.extend((0..).zip(items).map(|(i, item)| Reference::new(item.cluster, i == last)));
+                word
+            }
+            Form::Bricks => {
+                let word = VoxelWord::leaf(self.piece.groups.len());
+                let last = items.len().div_ceil(WIDTH) - 1;
+                for (i, items) in items.chunks(WIDTH).enumerate() {
+                    self.piece.groups.push(group(items, self.space.grid, self.margin, i == last));
+                }
+                word
+            }
+        };
+        self.check_memory()?;
+        word.ok_or(BuildError::TooLarge { what: "references" })
+    }
+
+    /// Fails where what is held exceeds the limit.
+    fn check_memory(&self) -> Result<(), BuildError> {
+        // Each part is going to be an item, too.
+        let parts = self.parts.len() * (size_of::<(u32, Item)>() + size_of::<Item>());
+        let work = size_of_val(&*self.items) + parts;
+        self.space.limits.check(size_of_val(self.space.clusters) + self.piece.bytes() + work)
+    }
+}
+
+/// The boxes of up to eight items, enlarged by the margin, in cells of the grid.
+fn group(items: &[Item], grid: &Grid, margin: f64, last: bool) -> BoxGroup {
+    let mut group =
+        BoxGroup { planes: [[[f32::INFINITY; WIDTH]; 3]; 2], clusters: [Reference::new(0, last); WIDTH] };
+    for (lane, item) in items.iter().enumerate() {
+        // What only rounding has let overlap the voxel may lie beside it.
+        let Aabb { lo, hi } = item.bounds;
+        let (lo, hi) = (lo.min(hi), lo.max(hi));
+        for axis in 0..3 {
+            let local = |x: f32, margin: f64| ((f64::from(x) + margin - grid.lo[axis]) / grid.cell) as f32;
+            group.planes[0][axis][lane] = local(lo[axis], -margin).next_down();
+            group.planes[1][axis][lane] = local(hi[axis], margin).next_up();
+        }
+        group.clusters[lane] = Reference::new(item.cluster, last);
+    }
+    group
+}

@@ -11,6 +11,8 @@ use crate::lanes::WIDTH;
 use crate::parallel;
 
 const BINS: usize = 16;
+/// Axes along which the centres spread less than this, in parts of the widest spread, are not tried.
+const THIN: f32 = 0.2;
 
 /// How many triangles a member stands for.
 pub(super) trait Weight: Fn(&Member) -> usize + Sync {}
@@ -82,7 +84,7 @@ fn half(members: usize) -> usize {
     (members / 2).next_multiple_of(WIDTH).min(members - 1)
 }
 
-/// Bins of the centres along each axis.
+/// Bins of the centres along each axis; a scale of zero where it isn't tried.
 struct Binning {
     start: Vec4,
     scale: Vec4,
@@ -98,9 +100,12 @@ impl Binning {
             let center = member.center();
             (lo, hi) = (lo.min(center), hi.max(center));
         }
+        let spread = hi - lo;
+        let least = THIN * spread.truncate().max_element();
         // The outer bins are half as wide.
-        let scale = ((bins - 1) as f32 / (hi - lo)).to_array().map(|x| if x.is_finite() { x } else { 0.0 });
-        Self { start: lo, scale: Vec4::from_array(scale) }
+        let scale = (bins - 1) as f32 / spread;
+        let is_tried = scale.is_finite_mask() & spread.cmpge(Vec4::splat(least));
+        Self { start: lo, scale: Vec4::select(is_tried, scale, Vec4::ZERO) }
     }
 
     /// The bin of a member along each axis, of `N`; the fourth means nothing.
@@ -148,7 +153,7 @@ impl Bin {
     #[inline(always)]
     fn cost(&self) -> f32 {
         let [x, y, z, _] = (self.hi - self.lo).to_array();
-        if self.count == 0 { 0.0 } else { (x * y + y * z + z * x) * self.count.div_ceil(WIDTH) as f32 }
+        (x * y + y * z + z * x) * self.count.div_ceil(WIDTH) as f32
     }
 }
 
@@ -160,22 +165,29 @@ fn cheapest_plane<const N: usize, W: Weight>(members: &[Member], weight: &W) -> 
         let of = binning.of::<N>(member);
         let count = weight(member);
         for axis in 0..3 {
-            let bin = &mut bins[axis][of[axis]];
-            *bin = bin.merge(Bin { lo: member.lo, hi: member.hi, count });
+            if binning.scale[axis] > 0.0 {
+                let bin = &mut bins[axis][of[axis]];
+                *bin = bin.merge(Bin { lo: member.lo, hi: member.hi, count });
+            }
         }
     }
     let mut best = (f32::INFINITY, 0, 0);
-    for (axis, bins) in bins.iter().enumerate() {
-        let mut above = [Bin::EMPTY; N];
-        for i in (0..N - 1).rev() {
-            above[i] = above[i + 1].merge(bins[i + 1]);
-        }
-        let mut below = Bin::EMPTY;
-        for i in 0..N - 1 {
-            below = below.merge(bins[i]);
-            let cost = below.cost() + above[i].cost();
-            if cost < best.0 && below.count > 0 && above[i].count > 0 {
-                best = (cost, axis, i);
+    for axis in 0..3 {
+        // The outer bins are occupied, so no side is empty.
+        if binning.scale[axis] > 0.0 {
+            let mut above = Bin::EMPTY;
+            let mut costs = [0.0; N];
+            for i in (1..N).rev() {
+                above = above.merge(bins[axis][i]);
+                costs[i - 1] = above.cost();
+            }
+            let mut below = Bin::EMPTY;
+            for i in 0..N - 1 {
+                below = below.merge(bins[axis][i]);
+                let cost = below.cost() + costs[i];
+                if cost < best.0 {
+                    best = (cost, axis, i);
+                }
             }
         }
     }

@@ -46,6 +46,8 @@ pub(super) struct Divider<'a, L, P> {
     parts: Vec<(u32, Item)>,
     /// Where the items of each part start, for the voxel at hand above those around it.
     starts: Vec<usize>,
+    /// What each part costs as a leaf, likewise.
+    costs: Vec<f32>,
 }
 
 impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
@@ -60,6 +62,7 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
             items: Vec::new(),
             parts: Vec::new(),
             starts: Vec::new(),
+            costs: Vec::new(),
         }
     }
 
@@ -70,24 +73,35 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
     /// Makes a voxel of the top grid.
     pub(super) fn top_voxel(&mut self, index: [u32; 3], items: &[Item]) -> Result<(), BuildError> {
         self.items.extend_from_slice(items);
-        let word = self.voxel(0..items.len(), Cube::of(self.space.grid, index), 0)?.0;
+        let cube = Cube::of(self.space.grid, index);
+        let leaf_cost = self.space.policy.leaf_cost(&self.view(0..items.len(), cube));
+        let word = self.voxel(0..items.len(), cube, leaf_cost, 0)?.0;
         self.items.clear();
         self.piece.top.push(word);
         Ok(())
     }
 
+    fn view(&self, range: Range<usize>, cube: Cube) -> VoxelView<'_> {
+        let bounds = cube.enlarged(self.margin);
+        VoxelView { items: &self.items[range], clusters: self.space.clusters, bounds }
+    }
+
     /// Makes a voxel and returns its word and cost.
-    fn voxel(&mut self, range: Range<usize>, cube: Cube, depth: u32) -> Result<(VoxelWord, f32), BuildError> {
+    fn voxel(
+        &mut self,
+        range: Range<usize>,
+        cube: Cube,
+        leaf_cost: f32,
+        depth: u32,
+    ) -> Result<(VoxelWord, f32), BuildError> {
         if range.is_empty() {
             return Ok((VoxelWord::EMPTY, 0.0));
         }
-        let bounds = cube.enlarged(self.margin);
-        let view = VoxelView { items: &self.items[range.clone()], clusters: self.space.clusters, bounds };
-        let leaf_cost = self.space.policy.leaf_cost(&view);
+        let view = self.view(range.clone(), cube);
         let divides = self.may_divide(cube, depth) && self.space.policy.divides(&view, leaf_cost);
         if divides && self.separates(&view, cube.side) {
             let mark = self.piece.mark();
-            let divided = self.divide(range.clone(), cube, depth)?;
+            let divided = self.divide(range.clone(), cube, leaf_cost, depth)?;
             if let Some((word, cost)) = divided
                 && cost < leaf_cost
             {
@@ -117,45 +131,79 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
         &mut self,
         range: Range<usize>,
         cube: Cube,
+        leaf_cost: f32,
         depth: u32,
     ) -> Result<Option<(VoxelWord, f32)>, BuildError> {
         let n = self.form.divisions();
         let parts = Grid::new(cube.lo, cube.side / f64::from(n), [n; 3]);
         let (floor, start) = (self.items.len(), self.starts.len());
         self.list_parts(range.clone(), &parts)?;
-        let divided = if self.gains(range) {
+        let mut divided = None;
+        if self.gains(range) {
             sort(self.parts.iter(), parts.len(), &mut self.items, &mut self.starts);
-            Some(self.node(&parts, start, depth)?)
-        } else {
-            None
-        };
+            let costs = self.costs.len();
+            if self.least_cost(&parts, start) < leaf_cost {
+                divided = Some(self.node(&parts, start, costs, depth)?);
+            }
+            self.costs.truncate(costs);
+        }
         self.items.truncate(floor);
         self.starts.truncate(start);
         Ok(divided)
     }
 
-    /// Makes the parts of a divided voxel, whose items start at `starts[start..]`.
-    fn node(&mut self, parts: &Grid, start: usize, depth: u32) -> Result<(VoxelWord, f32), BuildError> {
-        let n = self.form.divisions();
-        let occupied = |starts: &[usize], i: u32| starts[start + i as usize] < starts[start + i as usize + 1];
-        let count = (0..n.pow(3)).filter(|&i| occupied(&self.starts, i)).count();
-        let mask = match self.form {
-            Form::Lists { .. } => 0,
-            Form::Bricks => (0..64).map(|i| u64::from(occupied(&self.starts, i)) << i).sum(),
-        };
-        let (node, first) = self.reserve(mask)?;
-        let (mut sum, mut rank) = (0.0, 0);
-        for i in 0..n.pow(3) {
-            if !occupied(&self.starts, i) {
-                continue;
+    /// The items of part `i` of a divided voxel, whose parts start at `starts[start..]`.
+    fn part(&self, start: usize, i: usize) -> Range<usize> {
+        self.starts[start + i]..self.starts[start + i + 1]
+    }
+
+    /// What a divided voxel costs at least; puts what its parts cost as leaves on top of `costs`.
+    fn least_cost(&mut self, parts: &Grid, start: usize) -> f32 {
+        let policy = self.space.policy;
+        let (mut sum, mut count) = (0.0, 0);
+        for i in 0..parts.len() {
+            let items = self.part(start, i);
+            let leaf_cost = if items.is_empty() {
+                0.0
+            } else {
+                count += 1;
+                policy.leaf_cost(&self.view(items, part_cube(parts, i as u32)))
+            };
+            self.costs.push(leaf_cost);
+            sum += leaf_cost.min(policy.least_cost());
+        }
+        policy.node_cost(sum, count)
+    }
+
+    /// Makes the parts of a divided voxel, whose items start at `starts[start..]`, and which cost
+    /// `costs[costs..]` as leaves.
+    fn node(
+        &mut self,
+        parts: &Grid,
+        start: usize,
+        costs: usize,
+        depth: u32,
+    ) -> Result<(VoxelWord, f32), BuildError> {
+        let is_occupied = |i: usize| !self.part(start, i).is_empty();
+        let count = (0..parts.len()).filter(|&i| is_occupied(i)).count();
+        let (node, first) = match self.form {
+            Form::Lists { .. } => self.reserve_list(parts.len())?,
+            Form::Bricks => {
+                let mask = (0..parts.len()).map(|i| u64::from(is_occupied(i)) << i).sum();
+                self.reserve_brick(mask)?
             }
-            let items = self.starts[start + i as usize]..self.starts[start + i as usize + 1];
-            let cube = Cube::of(parts, [i % n, i / n % n, i / n / n]);
-            let (word, cost) = self.voxel(items, cube, depth + 1)?;
-            let slot = if self.form == Form::Bricks { rank } else { i as usize };
-            self.piece.words[first + slot] = word;
-            sum += cost;
-            rank += 1;
+        };
+        let (mut sum, mut rank) = (0.0, 0);
+        for i in 0..parts.len() {
+            let items = self.part(start, i);
+            if !items.is_empty() {
+                let (word, cost) =
+                    self.voxel(items, part_cube(parts, i as u32), self.costs[costs + i], depth + 1)?;
+                let slot = if self.form == Form::Bricks { rank } else { i };
+                self.piece.words[first + slot] = word;
+                sum += cost;
+                rank += 1;
+            }
         }
         Ok((node, self.space.policy.node_cost(sum, count as u32)))
     }
@@ -194,24 +242,25 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
         parts + n * n * (3 * n / 2) < n * n * whole
     }
 
-    /// Makes room for the parts of a divided voxel: its word, and the index of the first part's.
-    fn reserve(&mut self, occupied: u64) -> Result<(VoxelWord, usize), BuildError> {
-        let piece = &mut self.piece;
-        let first = piece.words.len();
-        let node = match self.form {
-            Form::Lists { divisions } => {
-                piece.words.resize(first + divisions.pow(3) as usize, VoxelWord::EMPTY);
-                VoxelWord::node(first)
-            }
-            Form::Bricks => {
-                piece.words.resize(first + occupied.count_ones() as usize, VoxelWord::EMPTY);
-                let first = u32::try_from(first).map_err(|_| BuildError::TooLarge { what: "voxels" })?;
-                piece.bricks.push(Brick { occupied, first, padding: 0 });
-                VoxelWord::node(piece.bricks.len() - 1)
-            }
-        };
+    /// Makes room for all parts of a divided voxel: its word, and the index of the first part's.
+    fn reserve_list(&mut self, parts: usize) -> Result<(VoxelWord, usize), BuildError> {
+        let first = self.piece.words.len();
+        self.piece.words.resize(first + parts, VoxelWord::EMPTY);
         self.check_memory()?;
-        Ok((node.ok_or(BuildError::TooLarge { what: "voxels" })?, first))
+        Ok((VoxelWord::node(first).ok_or(BuildError::TooLarge { what: "voxels" })?, first))
+    }
+
+    /// Makes room for the occupied parts of a divided voxel: its word, and the index of the first one's.
+    fn reserve_brick(&mut self, occupied: u64) -> Result<(VoxelWord, usize), BuildError> {
+        let too_large = BuildError::TooLarge { what: "voxels" };
+        let piece = &mut self.piece;
+        let words = piece.words.len();
+        let Some(first) = u32::try_from(words).ok() else { return Err(too_large) };
+        piece.words.resize(words + occupied.count_ones() as usize, VoxelWord::EMPTY);
+        piece.bricks.push(Brick { occupied, first, padding: 0 });
+        let node = VoxelWord::node(piece.bricks.len() - 1);
+        self.check_memory()?;
+        Ok((node.ok_or(too_large)?, words))
     }
 
     fn leaf(&mut self, range: Range<usize>) -> Result<VoxelWord, BuildError> {
@@ -244,6 +293,12 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
         let work = size_of_val(&*self.items) + parts;
         self.space.limits.check(size_of_val(self.space.clusters) + self.piece.bytes() + work)
     }
+}
+
+/// One part of a divided voxel.
+fn part_cube(parts: &Grid, i: u32) -> Cube {
+    let [n, _, _] = parts.dims;
+    Cube::of(parts, [i % n, i / n % n, i / n / n])
 }
 
 /// The boxes of up to eight items, enlarged by the margin, in cells of the grid.

@@ -23,6 +23,11 @@ pub(crate) trait Policy: Sync {
         f32::INFINITY
     }
 
+    /// What the best way to divide a voxel may cost, at least.
+    fn least_cost(&self) -> f32 {
+        0.0
+    }
+
     /// The cost of a divided voxel, from the sum of its voxels' costs and their number.
     fn node_cost(&self, _children: f32, _count: u32) -> f32 {
         0.0
@@ -156,6 +161,10 @@ impl Policy for Hybrid {
         let chance = |item: &Item| (item.bounds.half_area() / area).min(1.0);
         let clusters: f32 = voxel.items.iter().map(chance).sum();
         groups * self.params.group_cost + clusters
+    }
+
+    fn least_cost(&self) -> f32 {
+        self.params.brick_cost
     }
 
     /// A ray through a voxel meets one of its 4 x 4 x 4 parts with a chance of 1/16.

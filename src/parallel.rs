@@ -2,6 +2,18 @@
 //!
 //! What is computed does not depend on it.
 
+/// Runs `f` on a thread of the pool, so that what it starts there need not wait for one to wake up.
+#[cfg(feature = "parallel")]
+pub(crate) fn enter<R: Send>(f: impl FnOnce() -> R + Send) -> R {
+    rayon::scope(|_| f())
+}
+
+/// Runs `f`.
+#[cfg(not(feature = "parallel"))]
+pub(crate) fn enter<R>(f: impl FnOnce() -> R) -> R {
+    f()
+}
+
 /// Runs both.
 #[cfg(feature = "parallel")]
 pub(crate) fn join(a: impl FnOnce() + Send, b: impl FnOnce() + Send) {

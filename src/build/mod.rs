@@ -22,12 +22,17 @@ use crate::arena::{Arena, BRICK_LEVELS, Form, LIST_LEVELS};
 use crate::dda::{BRICK_MARGIN, LIST_MARGIN};
 use crate::lanes::dispatch;
 use crate::mesh::TriMesh;
+use crate::parallel;
 use analysis::Analysis;
 use policy::Policy;
 
 /// Builds the structure that `options` asks for.
 pub(crate) fn build(mesh: &TriMesh<'_>, options: &BuildOptions) -> Result<Arena, BuildError> {
     options.check()?;
+    parallel::enter(|| build_in_pool(mesh, options))
+}
+
+fn build_in_pool(mesh: &TriMesh<'_>, options: &BuildOptions) -> Result<Arena, BuildError> {
     let analysis = Analysis::new(mesh);
     let clusters = cluster::clusters(mesh, &analysis);
     match &options.structure {

@@ -12,7 +12,7 @@ use crate::parallel;
 
 const BINS: usize = 16;
 /// Axes along which the centres spread less than this, in parts of the widest spread, are not tried.
-const THIN: f32 = 0.2;
+const THIN: f32 = 0.1;
 
 /// How many triangles a member stands for.
 pub(super) trait Weight: Fn(&Member) -> usize + Sync {}

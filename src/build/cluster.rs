@@ -60,13 +60,11 @@ fn runs_mut<'a>(mut order: &'a mut [u32], mut ends: &'a mut [bool]) -> Vec<(&'a 
 fn arrange(boxes: &[Aabb], order: &mut [u32], ends: &mut [bool]) {
     const CROWDED: usize = 1024;
     let (cells, sorted) = sort_by_cell(boxes, order);
-    let mut groups: Vec<Member> = (0..)
-        .zip(&cells)
-        .map(|(i, cell)| {
-            let all = sorted[cell.clone()].iter().map(|&i| boxes[i as usize]);
-            Member::new(i, &all.fold(Aabb::EMPTY, Aabb::union))
-        })
-        .collect();
+    let bounds = |cell: &Range<usize>| {
+        sorted[cell.clone()].iter().fold(Aabb::EMPTY, |all, &i| all.union(boxes[i as usize]))
+    };
+    let around = parallel::map(&cells, bounds);
+    let mut groups: Vec<Member> = (0..).zip(&around).map(|(i, b)| Member::new(i, b)).collect();
     let mut last = vec![false; groups.len()];
     sah::split(&mut groups, &mut last, &|group: &Member| cells[group.index() as usize].len(), RUN);
     let (mut start, mut end) = (0, 0);

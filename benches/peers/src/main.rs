@@ -32,6 +32,9 @@ mod machine;
 #[path = "../../../src/bin/octogrid/output.rs"]
 mod output;
 #[allow(dead_code)]
+#[path = "../../../src/bin/octogrid/saved.rs"]
+mod saved;
+#[allow(dead_code)]
 #[path = "../../../src/bin/octogrid/report/statistics.rs"]
 mod statistics;
 #[allow(dead_code)]

@@ -40,7 +40,49 @@ impl Hit {
     }
 }
 
+/// Eight hits as a structure of arrays, the answers to a [`crate::RayPacket`].
+///
+/// 128 bytes, aligned to 32.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct HitPacket {
+    /// [`Hit::t`].
+    pub t: wide::f32x8,
+    /// [`Hit::u`].
+    pub u: wide::f32x8,
+    /// [`Hit::v`].
+    pub v: wide::f32x8,
+    /// [`Hit::prim`].
+    pub prim: wide::u32x8,
+}
+
+impl HitPacket {
+    /// Gathers eight hits.
+    pub fn new(hits: &[Hit; 8]) -> Self {
+        Self {
+            t: hits.map(|hit| hit.t).into(),
+            u: hits.map(|hit| hit.u).into(),
+            v: hits.map(|hit| hit.v).into(),
+            prim: hits.map(|hit| hit.prim).into(),
+        }
+    }
+
+    /// The hit of one lane.
+    ///
+    /// # Panics
+    /// Where `lane` is 8 or more.
+    pub fn get(&self, lane: usize) -> Hit {
+        Hit {
+            t: self.t.as_array()[lane],
+            u: self.u.as_array()[lane],
+            v: self.v.as_array()[lane],
+            prim: self.prim.as_array()[lane],
+        }
+    }
+}
+
 const _: () = assert!(size_of::<Hit>() == 16);
+const _: () = assert!(size_of::<HitPacket>() == 128);
 
 #[cfg(test)]
 mod tests {

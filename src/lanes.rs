@@ -6,8 +6,11 @@
 //! Lanes are used where an error bound is known, never for final answers, so that it does not matter
 //! whether an instruction set fuses a multiplication with an addition.
 
+mod double;
+
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
+pub(crate) use double::Doubles;
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f64x4, mask32x8, mask64x4};
 
 /// Lanes in one operation.

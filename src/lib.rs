@@ -5,6 +5,7 @@ mod aabb;
 mod arena;
 mod build;
 pub mod builtin;
+mod bundle;
 mod cluster;
 mod dda;
 pub mod descent;
@@ -21,7 +22,9 @@ pub mod obj;
 #[cfg(feature = "oracle")]
 pub mod oracle;
 mod overlap;
+mod packets;
 mod parallel;
+mod prepared;
 mod query;
 mod ray;
 mod rng;
@@ -38,7 +41,7 @@ pub use build::{
 pub use cluster::Cluster;
 #[cfg(feature = "file")]
 pub use file::{LoadError, MeshMismatch};
-pub use hit::Hit;
+pub use hit::{Hit, HitPacket};
 pub use kernel::Kernel;
 pub use lanes::Isa;
 pub use mesh::{MeshError, TriMesh};
@@ -48,6 +51,6 @@ pub use ray::{Ray, RayPacket};
 pub use rng::Rng;
 pub use scene::{AllHits, Scene};
 #[cfg(feature = "parallel")]
-pub use stream::HitLists;
+pub use stream::{HitLists, TooManyHits};
 pub use triangle::{Intersection, intersect};
 pub use validate::{Statistics, Violation};

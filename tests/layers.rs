@@ -8,9 +8,15 @@ use std::path::{Path, PathBuf};
 const LAYERS: &[(&str, &[&str])] = &[
     ("numbers", &["lanes", "aabb", "exact", "rng", "parallel"]),
     ("vocabulary", &["ray", "hit", "query", "mesh", "model"]),
-    ("pieces", &["triangle", "cluster", "kernel", "overlap", "arena", "descent", "dda", "validate"]),
+    (
+        "pieces",
+        &[
+            "triangle", "prepared", "cluster", "bundle", "kernel", "overlap", "arena", "descent", "dda",
+            "validate",
+        ],
+    ),
     ("phases", &["build", "traverse"]),
-    ("surface", &["scene", "stream", "file"]),
+    ("surface", &["scene", "packets", "stream", "file"]),
     ("edges", &["builtin", "obj", "oracle"]),
 ];
 
@@ -20,6 +26,9 @@ const WITHIN: &[(&str, &str)] = &[
     ("query", "hit"),
     ("model", "mesh"),
     ("cluster", "triangle"),
+    ("prepared", "triangle"),
+    ("bundle", "cluster"),
+    ("bundle", "triangle"),
     ("kernel", "cluster"),
     ("kernel", "triangle"),
     ("overlap", "triangle"),
@@ -28,6 +37,7 @@ const WITHIN: &[(&str, &str)] = &[
     ("dda", "descent"),
     ("validate", "arena"),
     ("validate", "cluster"),
+    ("packets", "scene"),
     ("stream", "scene"),
     ("file", "scene"),
     ("obj", "builtin"),

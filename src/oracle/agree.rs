@@ -141,6 +141,7 @@ impl<'a> Subjects<'a> {
             for i in sample(rays.len(), agreement.decorated) {
                 report.comparisons += subject.decorated(&rays[i], &answers[i])?;
             }
+            report.comparisons += subject.packets(rays, &answers)?;
             #[cfg(feature = "parallel")]
             for &threads in &agreement.threads {
                 report.comparisons += subject.batches(threads, rays, &answers)?;

@@ -15,7 +15,7 @@ use crate::hit::Hit;
 use crate::lanes::Isa;
 use crate::mesh::TriMesh;
 use crate::query::{All, Any, Closest, Counting};
-use crate::ray::Ray;
+use crate::ray::{Ray, RayPacket};
 use crate::scene::{AllHits, Scene};
 
 /// Compares brute force with exact arithmetic: t and triangles bit for bit, u and v (both rounded) to
@@ -116,25 +116,59 @@ impl<'a> Subject<'a> {
     ) -> Result<usize, Box<Disagreement>> {
         let mut closest = vec![Hit::MISS; rays.len()];
         let mut occluded = vec![false; rays.len()];
+        let (mut streamed, mut shadowed) = (closest.clone(), occluded.clone());
         let lists = pool(threads).install(|| {
             self.scene.closest_batch(rays, &mut closest);
             self.scene.occluded_batch(rays, &mut occluded);
+            self.scene.closest_stream(rays, &mut streamed);
+            self.scene.occluded_stream(rays, &mut shadowed);
             self.scene.all_batch(rays)
         });
         let (ends, expected) = (lists.offsets.len(), rays.len() + 1);
         if ends != expected {
             return Err(Disagreement::new(&self.name, "number of offsets of all_batch", &expected, &ends));
         }
-        let names = ["closest", "occluded", "all"].map(|query| format!("{query}_batch, {threads} threads"));
+        let names = ["closest_batch", "occluded_batch", "all_batch", "closest_stream", "occluded_stream"];
+        let names = names.map(|query| format!("{query}, {threads} threads"));
         for (i, (ray, answer)) in rays.iter().zip(answers).enumerate() {
             self.closest(&names[0], ray, answer, closest[i])?;
             self.occluded(&names[1], ray, answer, occluded[i])?;
+            self.closest(&names[3], ray, answer, streamed[i])?;
+            self.occluded(&names[4], ray, answer, shadowed[i])?;
             let hits = lists.hits.get(lists.offsets[i]..lists.offsets[i + 1]).unwrap_or(&[]);
             if !equal(hits, &answer.all) {
                 return self.differ(&names[2], ray, answer, &answer.all, &hits, hits);
             }
         }
-        Ok(3 * rays.len())
+        Ok(5 * rays.len())
+    }
+
+    /// Packets of one, two and eight times eight rays. The number of comparisons.
+    pub(super) fn packets(&self, rays: &[Ray], answers: &[Answer]) -> Result<usize, Box<Disagreement>> {
+        Ok(self.packets_of::<1>(rays, answers)?
+            + self.packets_of::<2>(rays, answers)?
+            + self.packets_of::<8>(rays, answers)?)
+    }
+
+    fn packets_of<const N: usize>(
+        &self,
+        rays: &[Ray],
+        answers: &[Answer],
+    ) -> Result<usize, Box<Disagreement>> {
+        let len = N * RayPacket::LEN;
+        let names = ["closest_packet", "occluded_packet"].map(|query| format!("{query} of {len} rays"));
+        for (rays, answers) in rays.chunks(len).zip(answers.chunks(len)) {
+            let part = |i: usize| rays.get(i * RayPacket::LEN..).unwrap_or(&[]);
+            let packets = std::array::from_fn::<_, N, _>(|i| RayPacket::new(part(i)));
+            let (hits, occluded) =
+                (self.scene.closest_packet(&packets), self.scene.occluded_packet(&packets));
+            for (i, (ray, answer)) in rays.iter().zip(answers).enumerate() {
+                let (packet, lane) = (i / RayPacket::LEN, i % RayPacket::LEN);
+                self.closest(&names[0], ray, answer, hits[packet].get(lane))?;
+                self.occluded(&names[1], ray, answer, occluded[packet] >> lane & 1 != 0)?;
+            }
+        }
+        Ok(2 * rays.len())
     }
 
     fn closest(&self, query: &str, ray: &Ray, answer: &Answer, found: Hit) -> Result<(), Box<Disagreement>> {

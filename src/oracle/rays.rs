@@ -9,6 +9,7 @@ use super::source::{Source, narrow, towards};
 use crate::mesh::TriMesh;
 use crate::query::EdgeRule;
 use crate::ray::Ray;
+use crate::rng::Rng;
 
 /// A kind of rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,6 +99,28 @@ pub fn in_turn(sets: &[RaySet], mesh: &TriMesh<'_>, seed: u64, n: usize) -> Vec<
     let rays: Vec<Vec<Ray>> = sets.iter().map(|set| set.rays(mesh, seed, each)).collect();
     let end = if sets.is_empty() { 0 } else { n };
     (0..end).map(|i| rays[i % rays.len()][i / rays.len()]).collect()
+}
+
+/// Each ray `n` times, the first time as it is and then moved a little, so that all go nearly alike: a few
+/// units in the last place, or up to 1/100 of its direction, or with another interval.
+pub fn companions(rays: &[Ray], seed: u64, n: usize) -> Vec<Ray> {
+    let rng = &mut Rng::new(seed);
+    rays.iter()
+        .flat_map(|ray| (0..n).map(|i| if i == 0 { *ray } else { companion(ray, rng) }).collect::<Vec<_>>())
+        .collect()
+}
+
+fn companion(ray: &Ray, rng: &mut Rng) -> Ray {
+    let mut near = *ray;
+    let axis = rng.below(3);
+    match rng.below(5) {
+        0 => {}
+        1 => near.dir[axis] = [near.dir[axis].next_up(), near.dir[axis].next_down()][rng.below(2)],
+        2 => near.origin[axis] = [near.origin[axis].next_up(), near.origin[axis].next_down()][rng.below(2)],
+        3 => near.dir += (0.01 * rng.unit()) as f32 * near.dir.abs().max_element() * rng.in_cube().as_vec3(),
+        _ => near.t_max = (rng.unit() * 2.0) as f32 * near.t_max.min(1.0),
+    }
+    near
 }
 
 fn random(source: &mut Source<'_>) -> Ray {

@@ -4,6 +4,9 @@
 //! they find ([`leaf`]), and a [`crate::Query`] keeps hits. Each structure has one walk for all of it.
 
 mod brick;
+mod coherent;
+mod frustum;
+mod group;
 mod hybrid;
 mod leaf;
 mod octree;
@@ -19,6 +22,8 @@ use crate::kernel::Test;
 use crate::lanes::{Isa, Lanes, dispatch};
 use crate::query::Query;
 use crate::ray::Ray;
+use coherent::Coherent;
+pub(crate) use group::{FEWEST, GROUP, Group};
 use hybrid::Hybrid;
 use leaf::LeafTest;
 use octree::Octree;
@@ -115,4 +120,15 @@ fn along<W: Walker, L: Lanes, V: Visit>(lanes: L, arena: &Arena, ray: &Ray, visi
 #[inline(never)]
 fn every_cluster<V: Visit>(arena: &Arena, visit: &mut V) {
     let _ = (0..arena.clusters.len() as u32).try_for_each(|index| visit.cluster(index));
+}
+
+/// Traces the rays of a group together; false where they don't go alike, and nothing was done.
+#[inline(never)]
+pub(crate) fn group<const ANY: bool>(isa: Isa, arena: &Arena, group: &mut Group) -> bool {
+    if arena.form != Form::Bricks {
+        return false;
+    }
+    dispatch!(isa, lanes => {
+        group.prepare(lanes, &arena.grid) && Coherent::<_, ANY>::run(lanes, arena, group)
+    })
 }

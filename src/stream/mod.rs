@@ -2,6 +2,11 @@
 //!
 //! Answers come in the order of the rays and are the same for any number of threads.
 
+mod gather;
+mod trace;
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use rayon::prelude::*;
 
 use crate::hit::Hit;
@@ -30,6 +35,21 @@ impl HitLists {
     }
 }
 
+/// There are more hits than [`Scene::all_stream`] was to hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooManyHits {
+    /// How many hits there may be.
+    pub limit: usize,
+}
+
+impl std::fmt::Display for TooManyHits {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "the rays have more than {} hits", self.limit)
+    }
+}
+
+impl std::error::Error for TooManyHits {}
+
 impl Scene {
     /// [`Scene::closest`] of each ray.
     ///
@@ -55,18 +75,39 @@ impl Scene {
 
     /// [`Scene::all`] of each ray, complete.
     pub fn all_batch(&self, rays: &[Ray]) -> HitLists {
+        let mut lists = HitLists::default();
+        self.all_stream(rays, usize::MAX, &mut lists).expect("no list is longer");
+        lists
+    }
+
+    /// [`Scene::all`] of each ray, complete, in place of what is in `lists`, whose memory is used again.
+    ///
+    /// # Errors
+    /// Where there are more than `limit` hits in all; `lists` is empty then, and no more than twice as many
+    /// have been held.
+    pub fn all_stream(&self, rays: &[Ray], limit: usize, lists: &mut HitLists) -> Result<(), TooManyHits> {
+        lists.offsets.clear();
+        lists.hits.clear();
+        let found = AtomicUsize::new(0);
+        let chunk = |rays: &[Ray]| {
+            let chunk = self.all_of_chunk(rays, limit);
+            let before = found.fetch_add(chunk.1.len(), Ordering::Relaxed);
+            if before.saturating_add(chunk.1.len()) <= limit { Ok(chunk) } else { Err(TooManyHits { limit }) }
+        };
         let chunks: Vec<(Vec<usize>, Vec<Hit>)> =
-            rays.par_chunks(CHUNK).map(|rays| self.all_of_chunk(rays)).collect();
-        let mut lists = HitLists { offsets: vec![0], hits: Vec::new() };
+            rays.par_chunks(CHUNK).map(chunk).collect::<Result<_, _>>()?;
+        lists.offsets.push(0);
         for (ends, hits) in chunks {
             let start = lists.hits.len();
             lists.offsets.extend(ends.into_iter().map(|end| start + end));
             lists.hits.extend(hits);
         }
-        lists
+        Ok(())
     }
 
-    fn all_of_chunk(&self, rays: &[Ray]) -> (Vec<usize>, Vec<Hit>) {
+    /// Where the hits of each ray end, and all hits; or those up to the first ray with which they are more
+    /// than `limit`.
+    fn all_of_chunk(&self, rays: &[Ray], limit: usize) -> (Vec<usize>, Vec<Hit>) {
         let mut buffer = vec![Hit::MISS; 64];
         let (mut ends, mut hits) = (Vec::with_capacity(rays.len()), Vec::new());
         for ray in rays {
@@ -77,6 +118,9 @@ impl Scene {
             }
             hits.extend_from_slice(&buffer[..found.len]);
             ends.push(hits.len());
+            if hits.len() > limit {
+                break;
+            }
         }
         (ends, hits)
     }

@@ -1,0 +1,73 @@
+//! Packets: rays and hits as structures of arrays, up to 64 at a time.
+
+use crate::hit::{Hit, HitPacket};
+use crate::ray::{Ray, RayPacket};
+use crate::scene::Scene;
+use crate::traverse::{self, FEWEST, GROUP, Group};
+
+impl Scene {
+    /// [`Scene::closest`] of each ray of N packets, traced together where they go alike: a packet of 16 rays
+    /// is `[RayPacket; 2]`. N is 1 to 8.
+    ///
+    /// Lanes whose ray is not valid, such as those with an empty interval, miss.
+    ///
+    /// ```
+    /// use octogrid::{Ray, RayPacket, Scene, builtin};
+    /// let scene = Scene::build(&builtin::cube().mesh()?, &Default::default())?;
+    /// let rays: Vec<Ray> = (0..16).map(|i| Ray::new([0.01 * i as f32, 0.2, 9.0], [0.0, 0.0, -1.0])).collect();
+    /// let [low, high] = scene.closest_packet(&[RayPacket::new(&rays), RayPacket::new(&rays[8..])]);
+    /// assert_eq!(low.get(3), scene.closest(&rays[3]));
+    /// assert_eq!(high.get(0), scene.closest(&rays[8]));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn closest_packet<const N: usize>(&self, packets: &[RayPacket; N]) -> [HitPacket; N] {
+        let mut hits = [[Hit::MISS; RayPacket::LEN]; N];
+        self.trace::<false, N>(packets, |packet, lane, hit| hits[packet][lane] = hit);
+        hits.map(|hits| HitPacket::new(&hits))
+    }
+
+    /// [`Scene::occluded`] of each ray of N packets, as [`Scene::closest_packet`] does it: a bit a lane, set
+    /// where there is a hit.
+    pub fn occluded_packet<const N: usize>(&self, packets: &[RayPacket; N]) -> [u8; N] {
+        let mut occluded = [0; N];
+        self.trace::<true, N>(packets, |packet, lane, hit| {
+            occluded[packet] |= u8::from(hit.is_hit()) << lane;
+        });
+        occluded
+    }
+
+    fn trace<const ANY: bool, const N: usize>(
+        &self,
+        packets: &[RayPacket; N],
+        mut answer: impl FnMut(usize, usize, Hit),
+    ) {
+        const { assert!(1 <= N && N * RayPacket::LEN <= GROUP, "one to eight packets") };
+        let mut rays = [Ray::new([0.0; 3], [0.0; 3]); GROUP];
+        let mut lanes = [(0, 0); GROUP];
+        let mut len = 0;
+        for (i, packet) in packets.iter().enumerate() {
+            for lane in 0..RayPacket::LEN {
+                let ray = packet.get(lane);
+                if ray.is_valid() {
+                    (rays[len], lanes[len]) = (ray, (i, lane));
+                    len += 1;
+                }
+            }
+        }
+        let mut group = Group::new();
+        let together = len >= FEWEST && {
+            group.load(len, |i| rays[i]);
+            traverse::group::<ANY>(self.options.isa, &self.arena, &mut group)
+        };
+        for i in 0..len {
+            let hit = if together {
+                group.hit(i)
+            } else if ANY {
+                Hit { prim: if self.occluded(&rays[i]) { 0 } else { u32::MAX }, ..Hit::MISS }
+            } else {
+                self.closest(&rays[i])
+            };
+            answer(lanes[i].0, lanes[i].1, hit);
+        }
+    }
+}

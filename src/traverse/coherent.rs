@@ -1,0 +1,377 @@
+//! The walk of a group of rays through the hybrid.
+//!
+//! The cells and voxels between the [`Frustum`]'s lines are visited slice by slice along the main axis, in the
+//! order in which the rays come to the slices; within a slice in any order, as the closest hit is decided by
+//! (t, index) alone. What a group meets is found in four steps, each on eight lanes:
+//!
+//! 1. eight cluster boxes against the frustum,
+//! 2. one box against eight rays, packet by packet,
+//! 3. the cluster's eight triangles against the [`Bundle`] of all lines,
+//! 4. one triangle against eight rays ([`Prepared`]), then the decision in f64 ([`intersect8`]).
+//!
+//! Where fewer than [`MANY`] rays of a packet meet a box, the cluster is tested ray by ray instead of 3 and 4.
+//!
+//! Source: I. Wald, T. Ize, A. Kensler, A. Knoll, S. G. Parker, "Ray Tracing Animated Scenes using Coherent
+//! Grid Traversal", 2006, for walking slices with a frustum; the steps are ours.
+//!
+//! # Errors
+//! What is left out is certainly not met: see [`group`](super::group) for rays against boxes, [`frustum`](
+//! super::frustum) for groups against voxels, [`Bundle`] and [`Prepared`] for triangles. Decisions are those
+//! of single rays.
+
+use super::frustum::{Frustum, span};
+use super::group::Group;
+use crate::arena::{Arena, BoxGroup, Voxel};
+use crate::bundle::Bundle;
+use crate::cluster::Cluster;
+use crate::lanes::{Doubles, WIDTH};
+use crate::prepared::{Hits, Prepared, intersect8};
+use crate::query::EdgeRule;
+use crate::ray::Ray;
+use crate::triangle::{RayLanes, candidates, intersect};
+
+/// Clusters tested last, with the rays that have been tested.
+struct Mailbox {
+    recent: [(u32, u64); 8],
+    next: usize,
+}
+
+impl Mailbox {
+    /// The rays of `rays` that have not been tested against a cluster; they count as tested afterwards.
+    #[inline(always)]
+    fn new_ones(&mut self, cluster: u32, rays: u64) -> u64 {
+        for entry in &mut self.recent {
+            if entry.0 == cluster {
+                let new = rays & !entry.1;
+                entry.1 |= rays;
+                return new;
+            }
+        }
+        self.recent[self.next] = (cluster, rays);
+        self.next = (self.next + 1) % self.recent.len();
+        rays
+    }
+}
+
+/// Groups that spread farther, in sizes of the grid, are not traced together.
+const WIDEST: f32 = 0.2;
+
+/// Traces a group.
+pub(crate) struct Coherent<'a, L, const ANY: bool> {
+    lanes: L,
+    arena: &'a Arena,
+    group: &'a mut Group,
+    mailbox: Mailbox,
+    frustum: Frustum,
+    bundle: Bundle,
+    changed: bool,
+}
+
+impl<'a, L: Doubles, const ANY: bool> Coherent<'a, L, ANY> {
+    /// Traces a group; false where it spreads too far, and nothing was done.
+    #[inline(always)]
+    pub(crate) fn run(lanes: L, arena: &'a Arena, group: &'a mut Group) -> bool {
+        let longest = arena.grid.longest() as f32;
+        let Some(frustum) = Frustum::around(lanes, group, longest) else { return true };
+        if frustum.width() > WIDEST * longest {
+            return false;
+        }
+        let bundle = frustum.bundle(&arena.grid);
+        let mailbox = Mailbox { recent: [(u32::MAX, 0); 8], next: 0 };
+        let mut walk = Self { lanes, arena, group, mailbox, frustum, bundle, changed: false };
+        walk.slices();
+        true
+    }
+
+    /// Slice after slice of the top grid.
+    #[inline(always)]
+    fn slices(&mut self) {
+        let grid = &self.arena.grid;
+        let strides = grid.strides();
+        let (main, [u, v]) = (self.group.main, self.group.others);
+        let last = (grid.dims[main] - 1) as f32;
+        let ends = self.frustum.span.map(|x| x.clamp(0.0, last) as u32);
+        let (mut slice, count) = if self.group.rises {
+            (ends[0], ends[1] - ends[0] + 1)
+        } else {
+            (ends[1], ends[1] - ends[0] + 1)
+        };
+        for _ in 0..count {
+            if self.changed && !self.narrow() {
+                return;
+            }
+            let (a, b) = (slice as f32, slice as f32 + 1.0);
+            let (a, b) = (a.max(self.frustum.span[0]), b.min(self.frustum.span[1]));
+            // Beyond the first and last cell is the grid's border, which rounding may reach.
+            if a <= b {
+                let range = |side: usize| {
+                    let most = grid.dims[self.group.others[side]] as f32;
+                    let [low, high] = self.frustum.range(side, a, b);
+                    (low < most && high >= 0.0).then(|| low.max(0.0) as u32..=high.min(most - 1.0) as u32)
+                };
+                if let (Some(us), Some(vs)) = (range(0), range(1)) {
+                    for j in vs {
+                        for i in us.clone() {
+                            let index = slice * strides[main] + i * strides[u] + j * strides[v];
+                            match self.arena.words[index as usize].get() {
+                                Voxel::Empty => {}
+                                Voxel::Leaf(first) => self.groups(first),
+                                Voxel::Node(brick) => {
+                                    let mut lo = [0.0; 3];
+                                    lo[main] = slice as f32;
+                                    lo[u] = i as f32;
+                                    lo[v] = j as f32;
+                                    self.brick(brick, lo, 0.25);
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+            slice = if self.group.rises { slice + 1 } else { slice.wrapping_sub(1) };
+        }
+    }
+
+    /// Fits the frustum to the rays that go on; false where there are none.
+    #[inline(always)]
+    fn narrow(&mut self) -> bool {
+        self.changed = false;
+        let span = span(self.lanes, self.group);
+        self.frustum.span = span;
+        span[0] <= span[1]
+    }
+
+    /// The voxels of a brick, slice after slice.
+    fn brick(&mut self, brick: u32, lo: [f32; 3], side: f32) {
+        self.lanes.vectorize(
+            #[inline(always)]
+            || self.voxels(brick, lo, side),
+        );
+    }
+
+    #[inline(always)]
+    fn voxels(&mut self, brick: u32, lo: [f32; 3], side: f32) {
+        let brick = self.arena.bricks[brick as usize];
+        let (main, [u, v]) = (self.group.main, self.group.others);
+        for k in 0..4 {
+            if self.changed && !self.narrow() {
+                return;
+            }
+            let slice = if self.group.rises { k } else { 3 - k };
+            let a = lo[main] + slice as f32 * side;
+            let (from, to) = (a.max(self.frustum.span[0]), (a + side).min(self.frustum.span[1]));
+            if from > to {
+                continue;
+            }
+            let range = |s: usize, axis: usize| {
+                let [low, high] = self.frustum.range(s, from, to);
+                let (low, high) = ((low - lo[axis]) / side, (high - lo[axis]) / side);
+                if low < 4.0 && high >= 0.0 {
+                    let (low, high) = (low.max(0.0) as u32, high.min(3.0) as u32);
+                    (2u32 << high) - (1 << low)
+                } else {
+                    0
+                }
+            };
+            let mask =
+                SPREAD[main][1 << slice] & SPREAD[u][range(0, u) as usize] & SPREAD[v][range(1, v) as usize];
+            let mut mask = mask & brick.occupied;
+            while mask != 0 {
+                let bit = mask.trailing_zeros();
+                mask &= mask - 1;
+                let word = brick.first + (brick.occupied & ((1 << bit) - 1)).count_ones();
+                match self.arena.words[word as usize].get() {
+                    Voxel::Empty => {}
+                    Voxel::Leaf(first) => self.groups(first),
+                    Voxel::Node(below) => {
+                        let at = |axis: usize| lo[axis] + (bit >> (2 * axis) & 3) as f32 * side;
+                        self.brick(below, [at(0), at(1), at(2)], 0.25 * side);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The clusters of a leaf.
+    #[inline(never)]
+    fn groups(&mut self, first: u32) {
+        self.lanes.vectorize(
+            #[inline(always)]
+            || self.leaf(first),
+        );
+    }
+
+    #[inline(always)]
+    fn leaf(&mut self, first: u32) {
+        let arena = self.arena;
+        for group in &arena.groups[first as usize..] {
+            let mut met = self.frustum.boxes(self.lanes, group);
+            while met != 0 {
+                let lane = met.trailing_zeros() as usize;
+                met &= met - 1;
+                let rays = self.meet(group, lane);
+                if rays == 0 {
+                    continue;
+                }
+                let index = group.clusters[lane].cluster();
+                let rays = self.mailbox.new_ones(index, rays);
+                if rays != 0 {
+                    self.cluster(&arena.clusters[index as usize], rays);
+                }
+            }
+            if group.clusters[0].is_last() {
+                break;
+            }
+        }
+    }
+
+    /// The rays that meet a box, as bits.
+    #[inline(always)]
+    fn meet(&self, group: &BoxGroup, lane: usize) -> u64 {
+        let lanes = self.lanes;
+        let plane = |side: usize, axis: usize| lanes.splat(group.planes[side][axis][lane]);
+        let (main, [u, v]) = (self.group.main, self.group.others);
+        let (x0, x1) = (plane(0, main), plane(1, main));
+        let (u0, u1, v0, v1) = (plane(0, u), plane(1, u), plane(0, v), plane(1, v));
+        let mut rays = 0;
+        for (i, packet) in self.group.packets[..self.group.packets()].iter().enumerate() {
+            let a = lanes.max(x0, lanes.load(&packet.span[0]));
+            let b = lanes.min(x1, lanes.load(&packet.span[1]));
+            let line = |side: usize, x: L::F32| {
+                lanes.mul_add(x, lanes.load(&packet.slope[side]), lanes.load(&packet.at[side]))
+            };
+            let (p, q) = (line(0, a), line(0, b));
+            let (r, s) = (line(1, a), line(1, b));
+            let apart = lanes.less(b, a)
+                | lanes.less(lanes.max(p, q), u0)
+                | lanes.less(u1, lanes.min(p, q))
+                | lanes.less(lanes.max(r, s), v0)
+                | lanes.less(v1, lanes.min(r, s));
+            rays |= u64::from(!lanes.bits(apart) & 0xff) << (8 * i);
+        }
+        rays
+    }
+
+    #[inline(always)]
+    fn cluster(&mut self, cluster: &Cluster, rays: u64) {
+        let mut many = 0u32;
+        for i in 0..self.group.packets() {
+            let mut active = (rays >> (8 * i)) as u32 & 0xff;
+            if active.count_ones() >= MANY {
+                many |= 1 << i;
+                continue;
+            }
+            while active != 0 {
+                let lane = active.trailing_zeros() as usize;
+                active &= active - 1;
+                self.single(cluster, i, lane);
+            }
+        }
+        if many != 0 {
+            self.packets(cluster, rays, many);
+        }
+    }
+
+    /// A cluster against one ray.
+    #[inline(always)]
+    fn single(&mut self, cluster: &Cluster, i: usize, lane: usize) {
+        let lanes = self.lanes;
+        let packet = &self.group.packets[i];
+        let three = |v: &[[f32; WIDTH]; 3]| {
+            [lanes.splat(v[0][lane]), lanes.splat(v[1][lane]), lanes.splat(v[2][lane])]
+        };
+        let ray = RayLanes {
+            origin: three(&packet.origin),
+            dir: three(&packet.scaled),
+            t_min: lanes.splat(packet.t_min[lane]),
+            t_max: lanes.splat(packet.t_max[lane]),
+        };
+        let mut bits = candidates(lanes, &ray, cluster.lanes(lanes)) & u32::from(cluster.occupied());
+        while bits != 0 {
+            let triangle = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            let mut hits = Hits { clear: 0, t: [0.0; WIDTH], u: [0.0; WIDTH], v: [0.0; WIDTH] };
+            let corners = cluster.triangle(triangle);
+            let found = exactly(&self.group.line(i, lane), corners, lane, &mut hits);
+            self.take(i, &hits, found, cluster.ids()[triangle]);
+        }
+    }
+
+    /// The triangles of a cluster against the packets in `many`.
+    #[inline(always)]
+    fn packets(&mut self, cluster: &Cluster, rays: u64, many: u32) {
+        let lanes = self.lanes;
+        let mut triangles = self.bundle.candidates(lanes, cluster);
+        while triangles != 0 {
+            let triangle = triangles.trailing_zeros() as usize;
+            triangles &= triangles - 1;
+            let prim = cluster.ids()[triangle];
+            if prim == Cluster::NO_TRIANGLE {
+                break;
+            }
+            let corners = cluster.triangle(triangle);
+            let prepared = Prepared::new(lanes, corners);
+            let mut left = many;
+            while left != 0 {
+                let i = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let packet = &self.group.packets[i];
+                let active = (rays >> (8 * i)) as u32 & 0xff;
+                let bits = prepared.candidates(lanes, &packet.lanes(lanes)) & active;
+                if bits != 0 {
+                    let mut hits = intersect8(lanes, &packet.origin, &packet.dir, corners);
+                    let mut found = bits & hits.clear;
+                    let mut unclear = bits & !hits.clear;
+                    while unclear != 0 {
+                        let lane = unclear.trailing_zeros() as usize;
+                        unclear &= unclear - 1;
+                        found |= exactly(&self.group.line(i, lane), corners, lane, &mut hits);
+                    }
+                    self.take(i, &hits, found, prim);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn take(&mut self, i: usize, hits: &Hits, found: u32, prim: u32) {
+        let (rises, slack) = (self.group.rises, self.group.slack);
+        let packet = &mut self.group.packets[i];
+        if packet.take(hits, found, prim) {
+            self.changed = true;
+            if ANY { packet.finish() } else { packet.shorten(self.lanes, rises, slack) }
+        }
+    }
+}
+
+/// Packets of which fewer rays meet a cluster's box are tested ray by ray.
+const MANY: u32 = 4;
+
+/// The decision on one ray, at its lane; which is set in the result where it is a hit.
+#[inline(never)]
+fn exactly(ray: &Ray, corners: [glam::Vec3; 3], lane: usize, hits: &mut Hits) -> u32 {
+    let Some(at) = intersect(ray, corners, EdgeRule::Closed) else { return 0 };
+    (hits.t[lane], hits.u[lane], hits.v[lane]) = (at.t, at.u, at.v);
+    1 << lane
+}
+
+/// By axis and four bits along it: the voxels of a brick with such an index.
+const SPREAD: [[u64; 16]; 3] = {
+    let mut spread = [[0; 16]; 3];
+    let mut axis = 0;
+    while axis < 3 {
+        let mut bits = 0;
+        while bits < 16 {
+            let mut voxel = 0;
+            while voxel < 64 {
+                if bits >> (voxel >> (2 * axis) & 3) & 1 != 0 {
+                    spread[axis][bits] |= 1 << voxel;
+                }
+                voxel += 1;
+            }
+            bits += 1;
+        }
+        axis += 1;
+    }
+    spread
+};

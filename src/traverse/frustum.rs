@@ -1,0 +1,163 @@
+//! What a group of rays may meet: between two lines along either of its minor axes.
+//!
+//! A line below all rays at two places is below them at every place between, as they are straight. So the
+//! bounds of the rays at both ends of their common span give the lines.
+//!
+//! # Errors
+//! Rays that pass the grid, of size S, reach no farther than 13 S from it between the ends, so that bounds are
+//! clamped to 16 S, and f32 misplaces a line by less than 2^-18 S; it is moved outwards by [`SLACK`].
+
+use super::group::Group;
+use crate::arena::{BoxGroup, Grid};
+use crate::bundle::Bundle;
+use crate::lanes::{Lanes, WIDTH};
+
+/// By how much the bounds are enlarged, in sizes of the grid.
+const SLACK: f32 = 1.0 / (1u32 << 16) as f32;
+
+/// The bounds of a group's rays.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frustum {
+    pub(crate) main: usize,
+    pub(crate) others: [usize; 2],
+    /// The least and greatest x.
+    pub(crate) span: [f32; 2],
+    /// By minor axis: the lower and the upper line, at + slope * x.
+    at: [[f32; 2]; 2],
+    slope: [[f32; 2]; 2],
+    /// The places that the rays were between at first.
+    ends: [f32; 2],
+}
+
+impl Frustum {
+    /// Around the rays that are not finished; `None` where there are none.
+    #[inline(always)]
+    pub(crate) fn around<L: Lanes>(lanes: L, group: &Group, longest: f32) -> Option<Self> {
+        let span = span(lanes, group);
+        if span[0] > span[1] {
+            return None;
+        }
+        // Two different places, whatever the span.
+        let ends = [span[0] - 1.0, span[1] + 1.0];
+        let mut frustum = Self {
+            main: group.main,
+            others: group.others,
+            span,
+            at: [[0.0; 2]; 2],
+            slope: [[0.0; 2]; 2],
+            ends,
+        };
+        let inverse = 1.0 / (ends[1] - ends[0]);
+        let slack = SLACK * longest;
+        // What a ray that passes the grid does not reach: others must not spoil the precision.
+        let most = 16.0 * longest;
+        for side in 0..2 {
+            let bounds = ends.map(|x| bounds(lanes, group, side, x).map(|u| u.clamp(-most, most)));
+            for k in 0..2 {
+                let slope = (bounds[1][k] - bounds[0][k]) * inverse;
+                frustum.slope[side][k] = slope;
+                frustum.at[side][k] = bounds[0][k] - slope * ends[0] + if k == 0 { -slack } else { slack };
+            }
+        }
+        Some(frustum)
+    }
+
+    /// Its greatest extent along a minor axis.
+    #[inline(always)]
+    pub(crate) fn width(&self) -> f32 {
+        let width = |side: usize, x: f32| {
+            let [low, high] = self.range(side, x, x);
+            high - low
+        };
+        let [a, b] = self.span;
+        width(0, a).max(width(0, b)).max(width(1, a)).max(width(1, b))
+    }
+
+    /// The least and greatest place along a minor axis from `a` to `b`.
+    #[inline(always)]
+    pub(crate) fn range(&self, side: usize, a: f32, b: f32) -> [f32; 2] {
+        let line = |k: usize, x: f32| self.at[side][k] + self.slope[side][k] * x;
+        [line(0, a).min(line(0, b)), line(1, a).max(line(1, b))]
+    }
+
+    /// The same lines in the coordinates of the scene.
+    #[inline(always)]
+    pub(crate) fn bundle(&self, grid: &Grid) -> Bundle {
+        let mut bundle = Bundle { middle: [[0.0; 3]; 2], half: [[0.0; 3]; 2] };
+        for end in 0..2 {
+            let x = self.ends[end];
+            let mut set = |axis: usize, [low, high]: [f32; 2]| {
+                let (low, high) = (f64::from(low), f64::from(high));
+                let middle = grid.lo[axis] + 0.5 * (low + high) * grid.cell;
+                // Rounding the middle moves it by half of this.
+                let slack = middle.abs() * f64::from(f32::EPSILON);
+                bundle.middle[end][axis] = middle as f32;
+                bundle.half[end][axis] = ((0.5 * (high - low) * grid.cell + slack) as f32).next_up();
+            };
+            set(self.main, [x, x]);
+            for side in 0..2 {
+                set(self.others[side], self.range(side, x, x));
+            }
+        }
+        bundle
+    }
+
+    /// The boxes that it meets, as bits.
+    #[inline(always)]
+    pub(crate) fn boxes<L: Lanes>(&self, lanes: L, group: &BoxGroup) -> u32 {
+        let plane = |side: usize, axis: usize| lanes.load(&group.planes[side][axis]);
+        let a = lanes.max(plane(0, self.main), lanes.splat(self.span[0]));
+        let b = lanes.min(plane(1, self.main), lanes.splat(self.span[1]));
+        let mut apart = lanes.less(b, a);
+        for side in 0..2 {
+            let line = |k: usize, x: L::F32| {
+                lanes.mul_add(x, lanes.splat(self.slope[side][k]), lanes.splat(self.at[side][k]))
+            };
+            let low = lanes.min(line(0, a), line(0, b));
+            let high = lanes.max(line(1, a), line(1, b));
+            let axis = self.others[side];
+            apart = apart | lanes.less(plane(1, axis), low) | lanes.less(high, plane(0, axis));
+        }
+        !lanes.bits(apart) & 0xff
+    }
+}
+
+/// The span of all rays.
+#[inline(always)]
+pub(crate) fn span<L: Lanes>(lanes: L, group: &Group) -> [f32; 2] {
+    let (mut low, mut high) = (lanes.splat(f32::INFINITY), lanes.splat(f32::NEG_INFINITY));
+    for packet in &group.packets[..group.packets()] {
+        low = lanes.min(low, lanes.load(&packet.span[0]));
+        high = lanes.max(high, lanes.load(&packet.span[1]));
+    }
+    [least(&lanes.store(low)), greatest(&lanes.store(high))]
+}
+
+/// The least and greatest place along a minor axis of the rays that are not finished.
+#[inline(always)]
+fn bounds<L: Lanes>(lanes: L, group: &Group, side: usize, x: f32) -> [f32; 2] {
+    let (mut low, mut high) = ([f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]);
+    for packet in &group.packets[..group.packets()] {
+        let u = lanes.store(lanes.mul_add(
+            lanes.splat(x),
+            lanes.load(&packet.slope[side]),
+            lanes.load(&packet.at[side]),
+        ));
+        for lane in 0..WIDTH {
+            let live = packet.span[0][lane] <= packet.span[1][lane];
+            low[lane] = if live && u[lane] < low[lane] { u[lane] } else { low[lane] };
+            high[lane] = if live && u[lane] > high[lane] { u[lane] } else { high[lane] };
+        }
+    }
+    [least(&low), greatest(&high)]
+}
+
+#[inline(always)]
+fn least(x: &[f32; WIDTH]) -> f32 {
+    x.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a })
+}
+
+#[inline(always)]
+fn greatest(x: &[f32; WIDTH]) -> f32 {
+    x.iter().fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a })
+}

@@ -1,0 +1,312 @@
+//! A group: up to 64 rays that go alike, as eight packets of eight.
+//!
+//! All rays of a group advance along one axis, its main axis, in the same direction, and none of them by
+//! less than a third of what it moves along another axis. So each is a line u = at + slope * x, where x is the
+//! place along the main axis and u that along one of the two others, in cells of the top grid: numbers
+//! that don't grow beyond the grid's size S, whatever the ray's direction, and that are compared with voxels
+//! and boxes as they are. A ray's interval is a range of x, its span.
+//!
+//! # Errors
+//! A line is computed in f64 and rounded to f32, which misplaces it by less than 2^-21.5 S where it is in the
+//! grid; evaluating it adds less than 2^-22 S. Voxels and boxes are built larger by four times that, see
+//! [`BRICK_MARGIN`](crate::dda::BRICK_MARGIN). Spans are enlarged by [`SLACK`].
+
+use glam::Vec3;
+
+use crate::arena::Grid;
+use crate::hit::Hit;
+use crate::lanes::{Doubles, Lanes, WIDTH};
+use crate::prepared::Hits;
+use crate::ray::Ray;
+use crate::triangle::RayLanes;
+
+/// The most rays of a group.
+pub(crate) const GROUP: usize = 64;
+/// Fewer rays are not worth a group.
+pub(crate) const FEWEST: usize = 8;
+
+const PACKETS: usize = GROUP / WIDTH;
+
+/// Slopes above this make no group.
+const STEEPEST: f64 = 3.0;
+
+/// More than the rounding errors of a place along the main axis, in sizes S of the grid.
+pub(crate) const SLACK: f64 = 1.0 / (1u64 << 20) as f64;
+
+/// Eight rays, a lane each.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(crate) struct Packet {
+    pub(crate) origin: [[f32; WIDTH]; 3],
+    pub(crate) dir: [[f32; WIDTH]; 3],
+    /// Scaled as in [`RayLanes`].
+    pub(crate) scaled: [[f32; WIDTH]; 3],
+    pub(crate) t_min: [f32; WIDTH],
+    pub(crate) t_max: [f32; WIDTH],
+    /// The open lower end of the interval.
+    pub(crate) after: [f32; WIDTH],
+    /// The closest hit so far; at first the upper end of the interval, without a triangle.
+    pub(crate) t: [f32; WIDTH],
+    pub(crate) u: [f32; WIDTH],
+    pub(crate) v: [f32; WIDTH],
+    pub(crate) prim: [u32; WIDTH],
+    /// The lines along the two other axes.
+    pub(crate) at: [[f32; WIDTH]; 2],
+    pub(crate) slope: [[f32; WIDTH]; 2],
+    /// The span: least and greatest x. Empty where the ray is finished or missing.
+    pub(crate) span: [[f32; WIDTH]; 2],
+    /// x at t = 0, and x a unit of t.
+    start: [f64; WIDTH],
+    speed: [f64; WIDTH],
+    /// Scaled t a unit of t.
+    scale: [f64; WIDTH],
+}
+
+impl Packet {
+    const EMPTY: Self = Self {
+        origin: [[0.0; WIDTH]; 3],
+        dir: [[0.0; WIDTH]; 3],
+        scaled: [[0.0; WIDTH]; 3],
+        t_min: [0.0; WIDTH],
+        t_max: [0.0; WIDTH],
+        after: [0.0; WIDTH],
+        t: [0.0; WIDTH],
+        u: [0.0; WIDTH],
+        v: [0.0; WIDTH],
+        prim: [u32::MAX; WIDTH],
+        start: [0.0; WIDTH],
+        speed: [0.0; WIDTH],
+        scale: [0.0; WIDTH],
+        at: [[0.0; WIDTH]; 2],
+        slope: [[0.0; WIDTH]; 2],
+        span: [[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]],
+    };
+
+    /// As the filter of triangles takes them.
+    #[inline(always)]
+    pub(crate) fn lanes<L: Lanes>(&self, lanes: L) -> RayLanes<L> {
+        let three = |v: &[[f32; WIDTH]; 3]| [lanes.load(&v[0]), lanes.load(&v[1]), lanes.load(&v[2])];
+        RayLanes {
+            origin: three(&self.origin),
+            dir: three(&self.scaled),
+            t_min: lanes.load(&self.t_min),
+            t_max: lanes.load(&self.t_max),
+        }
+    }
+}
+
+/// The rays.
+#[derive(Clone)]
+pub(crate) struct Group {
+    pub(crate) packets: [Packet; PACKETS],
+    pub(crate) len: usize,
+    /// The main axis, and the two others.
+    pub(crate) main: usize,
+    pub(crate) others: [usize; 2],
+    /// Whether x rises along the rays.
+    pub(crate) rises: bool,
+    pub(crate) slack: f32,
+}
+
+impl Group {
+    pub(crate) fn new() -> Self {
+        Self { packets: [Packet::EMPTY; PACKETS], len: 0, main: 0, others: [1, 2], rises: true, slack: 0.0 }
+    }
+
+    /// The packets in use.
+    #[inline(always)]
+    pub(crate) fn packets(&self) -> usize {
+        self.len.div_ceil(WIDTH)
+    }
+
+    /// The closest hit of a ray.
+    #[inline(always)]
+    pub(crate) fn hit(&self, ray: usize) -> Hit {
+        let (packet, lane) = (&self.packets[ray / WIDTH], ray % WIDTH);
+        match packet.prim[lane] {
+            u32::MAX => Hit::MISS,
+            prim => Hit { t: packet.t[lane], u: packet.u[lane], v: packet.v[lane], prim },
+        }
+    }
+
+    /// One of the rays, but for its interval.
+    #[inline(always)]
+    pub(crate) fn line(&self, packet: usize, lane: usize) -> Ray {
+        let packet = &self.packets[packet];
+        let at = |v: &[[f32; WIDTH]; 3]| Vec3::new(v[0][lane], v[1][lane], v[2][lane]);
+        Ray::new(at(&packet.origin), at(&packet.dir))
+    }
+
+    /// Takes one to [`GROUP`] rays.
+    #[inline(always)]
+    pub(crate) fn load(&mut self, len: usize, ray: impl Fn(usize) -> Ray) {
+        self.len = len;
+        for packet in 0..self.packets() {
+            let out = &mut self.packets[packet];
+            for lane in 0..WIDTH {
+                let ray = ray((packet * WIDTH + lane).min(len - 1));
+                for axis in 0..3 {
+                    out.origin[axis][lane] = ray.origin[axis];
+                    out.dir[axis][lane] = ray.dir[axis];
+                }
+                out.after[lane] = ray.t_min;
+                out.t[lane] = ray.t_max;
+                out.prim[lane] = u32::MAX;
+            }
+        }
+    }
+
+    /// Finds the lines and spans of the rays; false where they don't go alike, or one is not valid.
+    #[inline(always)]
+    pub(crate) fn prepare<L: Doubles>(&mut self, lanes: L, grid: &Grid) -> bool {
+        let first = self.line(0, 0).dir;
+        let size = first.abs();
+        self.main = if size.x >= size.y && size.x >= size.z {
+            0
+        } else if size.y >= size.z {
+            1
+        } else {
+            2
+        };
+        self.others = [(self.main + 1) % 3, (self.main + 2) % 3];
+        self.rises = first[self.main] > 0.0;
+        self.slack = (SLACK * f64::from(grid.longest())) as f32;
+        for packet in 0..self.packets() {
+            if !self.packet(lanes, grid, packet) {
+                return false;
+            }
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn packet<L: Doubles>(&mut self, lanes: L, grid: &Grid, packet: usize) -> bool {
+        const NEAR: f64 = 256.0;
+        let (main, others) = (self.main, self.others);
+        let first = packet * WIDTH;
+        let out = &mut self.packets[packet];
+        let wide = |x: &[f32; WIDTH]| lanes.widen(lanes.load(x));
+        let cells = lanes.splat8(1.0 / grid.cell);
+        let near = |axis: usize| lanes.splat8(NEAR * f64::from(grid.dims[axis]));
+        let place = |axis: usize| (wide(&out.origin[axis]) - lanes.splat8(grid.lo[axis])) * cells;
+        let x = place(main);
+        let d = wide(&out.dir[main]);
+        let inverse = lanes.splat8(1.0) / d;
+        let speed = d * cells;
+        let ahead =
+            if self.rises { lanes.less8(lanes.splat8(0.0), d) } else { lanes.less8(d, lanes.splat8(0.0)) };
+        let most = lanes.splat(f32::MAX);
+        let finite = |x: &[f32; WIDTH]| lanes.at_most(lanes.abs(lanes.load(x)), most);
+        let valid = finite(&out.origin[0])
+            & finite(&out.origin[1])
+            & finite(&out.origin[2])
+            & finite(&out.dir[0])
+            & finite(&out.dir[1])
+            & finite(&out.dir[2])
+            & lanes.less(lanes.load(&out.after), lanes.load(&out.t));
+        let mut fit = ahead & lanes.bits(valid) & lanes.at_most8(lanes.abs8(x), near(main));
+        for side in 0..2 {
+            let u = place(others[side]);
+            let slope = wide(&out.dir[others[side]]) * inverse;
+            out.slope[side] = lanes.store(lanes.narrow(slope));
+            out.at[side] = lanes.store(lanes.narrow(u - slope * x));
+            fit &= lanes.at_most8(lanes.abs8(slope), lanes.splat8(STEEPEST))
+                & lanes.at_most8(lanes.abs8(u), near(others[side]));
+        }
+        let from = lanes.narrow(x + wide(&out.after) * speed);
+        let to = lanes.narrow(reach(lanes, x, wide(&out.t) * speed, self.rises));
+        let (low, high) = if self.rises { (from, to) } else { (to, from) };
+        let slack = lanes.splat(self.slack);
+        out.span[0] = lanes.store(lanes.max(low - slack, lanes.splat(-1.0)));
+        out.span[1] = lanes.store(lanes.min(high + slack, lanes.splat(grid.dims[main] as f32 + 1.0)));
+        for lane in self.len.saturating_sub(first).min(WIDTH)..WIDTH {
+            out.span[0][lane] = f32::INFINITY;
+            out.span[1][lane] = f32::NEG_INFINITY;
+        }
+        out.start = lanes.store8(x);
+        out.speed = lanes.store8(speed);
+        let load = |x: &[f32; WIDTH]| lanes.abs(lanes.load(x));
+        let largest = lanes.max(lanes.max(load(&out.dir[0]), load(&out.dir[1])), load(&out.dir[2]));
+        let largest = lanes.store8(lanes.widen(largest));
+        let mut factor = [0.0; WIDTH];
+        for lane in 0..WIDTH {
+            // 2^-e and 2^e, where the largest component is in [2^(e - 1), 2^e).
+            let exponent = largest[lane].to_bits() >> 52;
+            factor[lane] = f64::from_bits((2045 - exponent) << 52);
+            out.scale[lane] = f64::from_bits((exponent + 1) << 52);
+        }
+        let factor = lanes.load8(&factor);
+        for axis in 0..3 {
+            out.scaled[axis] = lanes.store(lanes.narrow(wide(&out.dir[axis]) * factor));
+        }
+        let scale = lanes.load8(&out.scale);
+        out.t_min = lanes.store(-above(lanes, lanes.splat8(0.0) - wide(&out.after) * scale));
+        out.t_max = lanes.store(above(lanes, wide(&out.t) * scale));
+        fit == 0xff
+    }
+}
+
+impl Packet {
+    /// Takes the hits of a triangle in `lanes` where they are the closest so far; whether one is.
+    #[inline(always)]
+    pub(crate) fn take(&mut self, hits: &Hits, mut lanes: u32, prim: u32) -> bool {
+        let mut any = false;
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros() as usize;
+            lanes &= lanes - 1;
+            let (t, best) = (hits.t[lane], self.t[lane]);
+            if t > self.after[lane] && (t < best || t == best && prim < self.prim[lane]) {
+                self.t[lane] = t;
+                self.u[lane] = hits.u[lane];
+                self.v[lane] = hits.v[lane];
+                self.prim[lane] = prim;
+                any = true;
+            }
+        }
+        any
+    }
+
+    /// Rays with a hit are done.
+    #[inline(always)]
+    pub(crate) fn finish(&mut self) {
+        for lane in 0..WIDTH {
+            let hit = self.prim[lane] != u32::MAX;
+            self.span[0][lane] = if hit { f32::INFINITY } else { self.span[0][lane] };
+        }
+    }
+
+    /// Nothing beyond the closest hits counts.
+    #[inline(always)]
+    pub(crate) fn shorten<L: Doubles>(&mut self, lanes: L, rises: bool, slack: f32) {
+        let t = lanes.widen(lanes.load(&self.t));
+        let way = t * lanes.load8(&self.speed);
+        let x = lanes.narrow(reach(lanes, lanes.load8(&self.start), way, rises));
+        if rises {
+            let x = lanes.min(lanes.load(&self.span[1]), x + lanes.splat(slack));
+            self.span[1] = lanes.store(x);
+        } else {
+            let x = lanes.max(lanes.load(&self.span[0]), x - lanes.splat(slack));
+            self.span[0] = lanes.store(x);
+        }
+        self.t_max = lanes.store(above(lanes, t * lanes.load8(&self.scale)));
+    }
+}
+
+/// Where a ray ends that goes that way along the main axis, in proportion to a t of which half a unit in the
+/// last place counts too.
+#[inline(always)]
+fn reach<L: Doubles>(lanes: L, start: L::F64x8, way: L::F64x8, rises: bool) -> L::F64x8 {
+    let more = lanes.abs8(way) * lanes.splat8(HALF_ULP);
+    start + (if rises { way + more } else { way - more })
+}
+
+/// More than half a unit in the last place of an f32, relative to it.
+const HALF_ULP: f64 = 1.0 / (1u64 << 23) as f64;
+
+/// No less than `x`, and an ulp or two more at most; finite where `x` is below the largest f32.
+#[inline(always)]
+fn above<L: Doubles>(lanes: L, x: L::F64x8) -> L::F32 {
+    const ULP: f64 = f32::EPSILON as f64;
+    const LEAST: f64 = f32::from_bits(1) as f64;
+    lanes.narrow(x + (lanes.abs8(x) * lanes.splat8(ULP) + lanes.splat8(LEAST)))
+}

@@ -35,6 +35,8 @@ pub(crate) fn all() -> Vec<Contender> {
     vec![
         with("octogrid", octogrid(Structure::HYBRID, Calls::Single), true),
         with("octogrid-batch", octogrid(Structure::HYBRID, Calls::Batch), true),
+        with("octogrid-packet16", octogrid(Structure::HYBRID, Calls::Packets16), true),
+        with("octogrid-stream", octogrid(Structure::HYBRID, Calls::Stream), true),
         with("octogrid-octree", octogrid(Structure::OCTREE, Calls::Single), true),
         with("octogrid-uniform", octogrid(Structure::UNIFORM, Calls::Single), false),
         with("octogrid-recursive", octogrid(Structure::RECURSIVE, Calls::Single), false),

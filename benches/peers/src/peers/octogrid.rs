@@ -1,6 +1,6 @@
 //! octogrid, as its users call it.
 
-use octogrid::{BuildOptions, Hit, Ray, Scene, TriMesh};
+use octogrid::{BuildOptions, Hit, Ray, RayPacket, Scene, TriMesh};
 
 use crate::peer::{Answer, Build, Peer, Tracer};
 
@@ -14,6 +14,10 @@ pub(crate) enum Calls {
     Single,
     /// One call for all rays of a set.
     Batch,
+    /// One call for all rays of a set, those that go alike together.
+    Stream,
+    /// One call for 16 rays.
+    Packets16,
 }
 
 /// A configuration.
@@ -53,6 +57,19 @@ impl Peer for Built {
                 self.scene.closest_batch(rays, &mut hits);
                 hits.iter().zip(answers).for_each(|(hit, answer)| *answer = answer_of(hit));
             }
+            Calls::Packets16 => {
+                for (rays, answers) in rays.chunks(16).zip(answers.chunks_mut(16)) {
+                    let hits = self.scene.closest_packet(&packets(rays));
+                    for (i, answer) in answers.iter_mut().enumerate() {
+                        *answer = answer_of(&hits[i / 8].get(i % 8));
+                    }
+                }
+            }
+            Calls::Stream => {
+                let mut hits = vec![Hit::MISS; rays.len()];
+                self.scene.closest_stream(rays, &mut hits);
+                hits.iter().zip(answers).for_each(|(hit, answer)| *answer = answer_of(hit));
+            }
         }
     }
 
@@ -62,17 +79,24 @@ impl Peer for Built {
                 rays.iter().zip(blocked).for_each(|(ray, blocked)| *blocked = self.scene.occluded(ray));
             }
             Calls::Batch => self.scene.occluded_batch(rays, blocked),
+            Calls::Stream => self.scene.occluded_stream(rays, blocked),
+            Calls::Packets16 => {
+                for (rays, blocked) in rays.chunks(16).zip(blocked.chunks_mut(16)) {
+                    let bits = self.scene.occluded_packet(&packets(rays));
+                    blocked.iter_mut().enumerate().for_each(|(i, b)| *b = bits[i / 8] >> (i % 8) & 1 != 0);
+                }
+            }
         }
     }
 
     /// Unlike the others it collects and sorts the hits: that is how it knows each only once.
     fn count(&self, rays: &[Ray], counts: &mut [u32]) {
         match self.calls {
-            Calls::Single => {
+            Calls::Single | Calls::Packets16 => {
                 let mut hits = vec![Hit::MISS; ROOM];
                 rays.iter().zip(counts).for_each(|(ray, count)| *count = self.count_one(ray, &mut hits));
             }
-            Calls::Batch => {
+            Calls::Batch | Calls::Stream => {
                 let lists = self.scene.all_batch(rays);
                 let lengths = lists.offsets.windows(2).map(|pair| (pair[1] - pair[0]) as u32);
                 lengths.zip(counts).for_each(|(length, count)| *count = length);
@@ -91,6 +115,11 @@ impl Built {
             hits.resize(2 * hits.len(), Hit::MISS);
         }
     }
+}
+
+/// Up to 16 rays as two packets.
+fn packets(rays: &[Ray]) -> [RayPacket; 2] {
+    [RayPacket::new(rays), RayPacket::new(rays.get(8..).unwrap_or(&[]))]
 }
 
 #[inline(always)]

@@ -51,7 +51,7 @@ pub(crate) struct Rates {
 /// The closest hits.
 pub(crate) fn closest(scene: &Scene, rays: &[Ray], rate: &mut Rate) -> Vec<Hit> {
     let mut hits = vec![Hit::MISS; rays.len()];
-    rate.time(rays.len(), || scene.closest_batch(rays, &mut hits));
+    rate.time(rays.len(), || scene.closest_stream(rays, &mut hits));
     hits
 }
 

@@ -54,13 +54,15 @@ impl Scene {
                 }
             }
         }
-        let mut group = Group::new();
-        let together = len >= FEWEST && {
+        let group = if len >= FEWEST && point_alike(&rays[..len]) {
+            let mut group = Group::new();
             group.load(len, |i| rays[i]);
-            traverse::group::<ANY>(self.options.isa, &self.arena, &mut group)
+            traverse::group::<ANY>(self.options.isa, &self.arena, &mut group).then_some(group)
+        } else {
+            None
         };
         for i in 0..len {
-            let hit = if together {
+            let hit = if let Some(group) = &group {
                 group.hit(i)
             } else if ANY {
                 Hit { prim: if self.occluded(&rays[i]) { 0 } else { u32::MAX }, ..Hit::MISS }
@@ -70,4 +72,11 @@ impl Scene {
             answer(lanes[i].0, lanes[i].1, hit);
         }
     }
+}
+
+/// Whether all directions are near the first: cheap where they are not, as the first that is not ends it.
+fn point_alike(rays: &[Ray]) -> bool {
+    const COSINE: f32 = 0.9;
+    let first = rays[0].dir.normalize_or_zero();
+    rays.iter().all(|ray| ray.dir.dot(first) > COSINE * ray.dir.length())
 }

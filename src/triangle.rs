@@ -188,8 +188,8 @@ pub(crate) type Vec3Lanes<L> = [<L as Lanes>::F32; 3];
 pub(crate) struct RayLanes<L: Lanes> {
     pub(crate) origin: Vec3Lanes<L>,
     pub(crate) dir: Vec3Lanes<L>,
-    /// 16 times the largest absolute component of the direction.
-    bound: L::F32,
+    /// 16 times the largest absolute component of the direction, or more.
+    pub(crate) bound: L::F32,
     pub(crate) t_min: L::F32,
     pub(crate) t_max: L::F32,
 }

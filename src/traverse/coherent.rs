@@ -20,7 +20,7 @@
 //! of single rays.
 
 use super::frustum::{Frustum, span};
-use super::group::Group;
+use super::group::{Group, SCALED};
 use crate::arena::{Arena, BoxGroup, Voxel};
 use crate::bundle::Bundle;
 use crate::cluster::Cluster;
@@ -283,6 +283,7 @@ impl<'a, L: Doubles, const ANY: bool> Coherent<'a, L, ANY> {
         let ray = RayLanes {
             origin: three(&packet.origin),
             dir: three(&packet.scaled),
+            bound: lanes.splat(SCALED),
             t_min: lanes.splat(packet.t_min[lane]),
             t_max: lanes.splat(packet.t_max[lane]),
         };

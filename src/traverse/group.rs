@@ -33,13 +33,16 @@ const STEEPEST: f64 = 3.0;
 /// More than the rounding errors of a place along the main axis, in sizes S of the grid.
 pub(crate) const SLACK: f64 = 1.0 / (1u64 << 20) as f64;
 
+/// The bound of [`RayLanes`] for scaled directions, whose largest component lies in [0.5, 1).
+pub(crate) const SCALED: f32 = 16.0;
+
 /// Eight rays, a lane each.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 pub(crate) struct Packet {
     pub(crate) origin: [[f32; WIDTH]; 3],
     pub(crate) dir: [[f32; WIDTH]; 3],
-    /// Scaled as in [`RayLanes`].
+    /// Scaled by a power of two, so that the largest component lies in [0.5, 1), and the interval with it.
     pub(crate) scaled: [[f32; WIDTH]; 3],
     pub(crate) t_min: [f32; WIDTH],
     pub(crate) t_max: [f32; WIDTH],
@@ -89,6 +92,7 @@ impl Packet {
         RayLanes {
             origin: three(&self.origin),
             dir: three(&self.scaled),
+            bound: lanes.splat(SCALED),
             t_min: lanes.load(&self.t_min),
             t_max: lanes.load(&self.t_max),
         }

@@ -76,8 +76,9 @@ impl<L: Lanes> Path<L> {
         let inverse = lanes.splat4(1.0) / speeds;
         let start = lanes.greatest4(-position * inverse);
         let end = lesser(lanes.least4((size - position) * inverse), rounds_to(ray.t_max));
-        // NaN, which t_max may be, is no path either.
-        if !(start <= end) {
+        // Not where t_max is NaN.
+        let meets = start <= end;
+        if !meets {
             return Clip::Miss;
         }
         Clip::Path(Self {

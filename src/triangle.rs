@@ -274,8 +274,7 @@ impl Scale {
     pub(crate) fn of(dir: Vec3) -> Self {
         const MOST: f32 = (1u64 << 32) as f32;
         let steepest = steepest(dir);
-        let fits = (steepest >= 0.5) & (steepest <= MOST);
-        if fits { Self { factor: 1.0, inverse: 1.0 } } else { Self::to_one(steepest) }
+        if (0.5..=MOST).contains(&steepest) { Self { factor: 1.0, inverse: 1.0 } } else { Self::to_one(steepest) }
     }
 
     #[cold]

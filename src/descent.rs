@@ -18,7 +18,7 @@
 //! assert_eq!(&general.exit, halves.exit());
 //! ```
 
-use crate::lanes::{Isa, Lanes, dispatch};
+use crate::lanes::{Isa, Lanes, dispatch_here};
 
 /// A part of a voxel that is divided into N x N x N, for any N.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,7 +109,7 @@ impl Halves {
     /// ray has not passed the middle plane, it leaves there, and the axis' bit is flipped.
     #[inline(always)]
     pub fn descend(&self, time: f64, rises: u32) -> Self {
-        dispatch!(Isa::baseline(), lanes => self.descend_in(lanes, time, rises))
+        dispatch_here!(Isa::baseline(), lanes => self.descend_in(lanes, time, rises))
     }
 
     /// [`Halves::descend`] with an instruction set that was found at run time.

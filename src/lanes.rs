@@ -213,12 +213,7 @@ macro_rules! dispatch {
             fearless_simd::Level::Avx2(simd) => $crate::lanes::dispatch!(@ simd, $lanes => $body),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             fearless_simd::Level::Avx512(simd) => $crate::lanes::dispatch!(@ simd, $lanes => $body),
-            level => $crate::lanes::apart(|| {
-                fearless_simd::dispatch!(level, simd => {
-                    let $lanes = $crate::lanes::Dispatched(simd);
-                    $body
-                })
-            }),
+            _ => $crate::lanes::apart(|| $crate::lanes::dispatch_here!($isa, $lanes => $body)),
         }
     };
     (@ $simd:ident, $lanes:ident => $body:expr) => {{
@@ -227,6 +222,17 @@ macro_rules! dispatch {
     }};
 }
 pub(crate) use dispatch;
+
+/// The same where all of it may be compiled into the caller.
+macro_rules! dispatch_here {
+    ($isa:expr, $lanes:ident => $body:expr) => {
+        fearless_simd::dispatch!($isa.level(), simd => {
+            let $lanes = $crate::lanes::Dispatched(simd);
+            $body
+        })
+    };
+}
+pub(crate) use dispatch_here;
 
 /// Runs `f` in a function of its own.
 #[inline(never)]

@@ -219,17 +219,35 @@ impl<L: Lanes> RayLanes<L> {
     /// A ray a lane.
     #[inline(always)]
     pub(crate) fn gather(lanes: L, packet: &RayPacket) -> Self {
-        let rays: [Ray; WIDTH] = std::array::from_fn(|lane| packet.get(lane));
-        let rays = rays.map(|ray| Scale::of(ray.dir).scaled(&ray));
-        let load = |f: &dyn Fn(&Ray) -> f32| lanes.load(&std::array::from_fn(|i| f(&rays[i])));
+        let rays = Self::load(lanes, packet);
+        let short = lanes.less(rays.bound, lanes.splat(16.0 * Scale::LEAST));
+        let long = lanes.less(lanes.splat(16.0 * Scale::MOST), rays.bound);
+        if lanes.bits(short | long) & 0xff == 0 { rays } else { Self::load(lanes, &scaled(packet)) }
+    }
+
+    #[inline(always)]
+    fn load(lanes: L, packet: &RayPacket) -> Self {
+        let load = |values: &wide::f32x8| lanes.load(values.as_array());
+        let three = |values: &[wide::f32x8; 3]| [load(&values[0]), load(&values[1]), load(&values[2])];
+        let dir = three(&packet.dir);
+        let [x, y, z] = dir;
+        let steepest = lanes.max(lanes.max(lanes.abs(x), lanes.abs(y)), lanes.abs(z));
         Self {
-            origin: std::array::from_fn(|axis| load(&|ray| ray.origin[axis])),
-            dir: std::array::from_fn(|axis| load(&|ray| ray.dir[axis])),
-            bound: load(&|ray| 16.0 * steepest(ray.dir)),
-            t_min: load(&|ray| ray.t_min),
-            t_max: load(&|ray| ray.t_max),
+            origin: three(&packet.origin),
+            dir,
+            bound: lanes.splat(16.0) * steepest,
+            t_min: load(&packet.t_min),
+            t_max: load(&packet.t_max),
         }
     }
+}
+
+/// The packet with each of its rays scaled.
+#[cold]
+#[inline(never)]
+fn scaled(packet: &RayPacket) -> RayPacket {
+    let rays: [Ray; WIDTH] = std::array::from_fn(|lane| packet.get(lane));
+    RayPacket::new(&rays.map(|ray| Scale::of(ray.dir).scaled(&ray)))
 }
 
 /// The largest absolute component of a direction.
@@ -269,12 +287,19 @@ pub(crate) struct Scale {
 }
 
 impl Scale {
+    /// The least and the largest component that need no scale.
+    const LEAST: f32 = 0.5;
+    const MOST: f32 = (1u64 << 32) as f32;
+
     /// The scale for a direction that is finite and not zero.
     #[inline(always)]
     pub(crate) fn of(dir: Vec3) -> Self {
-        const MOST: f32 = (1u64 << 32) as f32;
         let steepest = steepest(dir);
-        if (0.5..=MOST).contains(&steepest) { Self { factor: 1.0, inverse: 1.0 } } else { Self::to_one(steepest) }
+        if (Self::LEAST..=Self::MOST).contains(&steepest) {
+            Self { factor: 1.0, inverse: 1.0 }
+        } else {
+            Self::to_one(steepest)
+        }
     }
 
     #[cold]

@@ -240,6 +240,28 @@ fn kernel_decision((_, _, _, ray, corners): (Isa, Cluster, RayPacket, Ray, [Vec3
     black_box(intersect(black_box(&ray), black_box(corners), EdgeRule::Closed).map_or(0, |at| at.t.to_bits()))
 }
 
+/// Sixteen rays into the room, through neighbouring pixels or every way, and their hits one by one.
+fn packets(together: bool) -> (Scene, [RayPacket; 2]) {
+    let (scene, rays, _) = room(Structure::HYBRID, Walk::Special, Query::Closest);
+    let rays: Vec<Ray> = if together {
+        let dir = |i: u16| Vec3::new(0.01 * f32::from(i % 4), 0.01 * f32::from(i / 4), 1.0);
+        (0..16).map(|i| Ray { dir: dir(i), ..rays[0] }).collect()
+    } else {
+        rays[..16].to_vec()
+    };
+    let packets = [RayPacket::new(&rays), RayPacket::new(&rays[8..])];
+    let hits = scene.closest_packet(&packets);
+    assert!((0..16).all(|i| hits[i / 8].get(i % 8) == scene.closest(&rays[i])));
+    (scene, packets)
+}
+
+#[library_benchmark(setup = packets)]
+#[bench::together(true)]
+#[bench::apart(false)]
+fn sixteen_rays((scene, packets): (Scene, [RayPacket; 2])) -> u32 {
+    black_box(black_box(&scene).closest_packet(black_box(&packets))[1].get(7).prim)
+}
+
 library_benchmark_group!(
     name = descents,
     benchmarks = [descend_general_2, descend_general_4, descend_halves]
@@ -247,5 +269,6 @@ library_benchmark_group!(
 library_benchmark_group!(name = steps, benchmarks = [step_general_2, step_halves]);
 library_benchmark_group!(name = walks, benchmarks = [same_octree, same_octree_without_tests, structures]);
 library_benchmark_group!(name = kernels, benchmarks = [kernel_ray, kernel_packet, kernel_decision]);
+library_benchmark_group!(name = packed, benchmarks = [sixteen_rays]);
 
-main!(library_benchmark_groups = [descents, steps, walks, kernels]);
+main!(library_benchmark_groups = [descents, steps, walks, kernels, packed]);

@@ -25,13 +25,11 @@ pub(crate) struct Prepared<L: Lanes> {
     e1: Vec3Lanes<L>,
     e2: Vec3Lanes<L>,
     normal: Vec3Lanes<L>,
-    /// 16 E, 16 E E, and what det may be off by.
-    e16: L::F32,
-    ee: L::F32,
-    det_slack: L::F32,
+    /// E, and a little more, which covers what underflows.
+    size: L::F32,
 }
 
-/// 2^-21: with the factor 16 of E, the bound of the errors.
+/// 2^-21: with the factor 16 of [`RayLanes::bound`], the bound of the errors.
 const EPS: f32 = 1.0 / (1u32 << 21) as f32;
 
 impl<L: Lanes> Prepared<L> {
@@ -40,15 +38,12 @@ impl<L: Lanes> Prepared<L> {
         let (e1, e2) = (v1 - v0, v2 - v0);
         let normal = e1.cross(e2);
         let size = e1.abs().max(e2.abs()).max_element() + 2f32.powi(-40);
-        let (e16, ee) = (16.0 * size, 16.0 * size * size);
         Self {
             corner: splat(lanes, v0),
             e1: splat(lanes, e1),
             e2: splat(lanes, e2),
             normal: splat(lanes, normal),
-            e16: lanes.splat(e16),
-            ee: lanes.splat(ee),
-            det_slack: lanes.splat(EPS * ee),
+            size: lanes.splat(size),
         }
     }
 
@@ -65,15 +60,18 @@ impl<L: Lanes> Prepared<L> {
         let numerator = -(sign * dot::<Once, L>(lanes, s, self.normal));
         let a = lanes.max(lanes.max(lanes.abs(s[0]), lanes.abs(s[1])), lanes.abs(s[2]));
         let eps = lanes.splat(EPS);
-        let slack = lanes.mul_add(eps, self.e16 * a, self.det_slack);
+        let de = ray.bound * self.size;
+        let ee = de * self.size;
+        let det_slack = eps * ee;
+        let slack = lanes.mul_add(eps, de * a, det_slack);
         let least = lanes.min(lanes.min(w1, w2), abs - (w1 + w2));
         let outside = lanes.less(least + slack, lanes.splat(0.0));
-        let (eea, tiny) = (self.ee * a, lanes.splat(2f32.powi(-97) / 16.0) * self.e16);
-        let late = lanes.mul_add(eps, lanes.mul_add(self.ee, lanes.abs(ray.t_max), eea), tiny);
-        let early = lanes.mul_add(eps, lanes.mul_add(self.ee, lanes.abs(ray.t_min), eea), tiny);
+        let (eea, tiny) = (ee * a, lanes.splat(2f32.powi(-97)) * self.size);
+        let late = lanes.mul_add(eps, lanes.mul_add(ee, lanes.abs(ray.t_max), eea), tiny);
+        let early = lanes.mul_add(eps, lanes.mul_add(ee, lanes.abs(ray.t_min), eea), tiny);
         let beyond = lanes.less(lanes.mul_add(ray.t_max, abs, late), numerator)
             | lanes.less(numerator + early, ray.t_min * abs);
-        let certain = lanes.less(self.det_slack, abs);
+        let certain = lanes.less(det_slack, abs);
         !lanes.bits(outside | (beyond & certain)) & 0xff
     }
 }

@@ -10,6 +10,7 @@
 //! Parts are made depth first in the order of their index.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::options::BuildError;
 use super::piece::Piece;
@@ -28,6 +29,8 @@ pub(super) struct Space<'a, L, P> {
     pub(super) clusters: &'a [Cluster],
     pub(super) grid: &'a Grid,
     pub(super) limits: Limits,
+    /// Bytes of the pieces that are finished.
+    pub(super) held: AtomicUsize,
 }
 
 /// Makes a piece.
@@ -67,6 +70,7 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
     }
 
     pub(super) fn piece(self) -> Piece {
+        self.space.held.fetch_add(self.piece.bytes(), Ordering::Relaxed);
         self.piece
     }
 
@@ -286,12 +290,15 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
         word.ok_or(BuildError::TooLarge { what: "references" })
     }
 
-    /// Fails where what is held exceeds the limit.
+    /// Fails where the clusters and this piece, with the work on it or with the finished pieces, exceed the
+    /// limit: whatever the threads, as the pieces are all of the arena.
     fn check_memory(&self) -> Result<(), BuildError> {
         // Each part is going to be an item, too.
         let parts = self.parts.len() * (size_of::<(u32, Item)>() + size_of::<Item>());
         let work = size_of_val(&*self.items) + parts;
-        self.space.limits.check(size_of_val(self.space.clusters) + self.piece.bytes() + work)
+        let held = self.space.held.load(Ordering::Relaxed);
+        let own = size_of_val(self.space.clusters) + self.piece.bytes();
+        self.space.limits.check(own + work.max(held))
     }
 }
 

@@ -10,6 +10,7 @@
 //! threads.
 
 use std::ops::Range;
+use std::sync::atomic::AtomicUsize;
 
 use super::divide::{Divider, Space};
 use super::options::BuildError;
@@ -34,7 +35,7 @@ pub(crate) fn build<L: Lanes + Sync, P: Policy>(
     // Before it is there: a word, and where the items of a voxel start.
     let voxels = grid.len() * (size_of::<VoxelWord>() + size_of::<usize>());
     limits.check(size_of_val(&*clusters) + size_of_val(&*whole) + voxels)?;
-    let space = Space { lanes, policy, clusters: &clusters, grid: &grid, limits };
+    let space = Space { lanes, policy, clusters: &clusters, grid: &grid, limits, held: AtomicUsize::new(0) };
     let (items, starts) = sorted_items(&space, &whole)?;
     let parts = portions(&starts);
     let pieces: Result<Vec<Piece>, _> =

@@ -143,11 +143,9 @@ impl<'a> Subject<'a> {
         Ok(5 * rays.len())
     }
 
-    /// Packets of one, two and eight times eight rays. The number of comparisons.
+    /// Packets of two and eight times eight rays. The number of comparisons.
     pub(super) fn packets(&self, rays: &[Ray], answers: &[Answer]) -> Result<usize, Box<Disagreement>> {
-        Ok(self.packets_of::<1>(rays, answers)?
-            + self.packets_of::<2>(rays, answers)?
-            + self.packets_of::<8>(rays, answers)?)
+        Ok(self.packets_of::<2>(rays, answers)? + self.packets_of::<8>(rays, answers)?)
     }
 
     fn packets_of<const N: usize>(

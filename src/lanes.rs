@@ -251,6 +251,7 @@ impl Isa {
     }
 
     /// The one that the crate is compiled for.
+    #[inline(always)]
     pub(crate) fn baseline() -> Self {
         Self(Level::baseline())
     }
@@ -270,6 +271,7 @@ impl Isa {
         all.into_iter().flatten().map(Self).collect()
     }
 
+    #[inline(always)]
     pub(crate) fn level(self) -> Level {
         self.0
     }

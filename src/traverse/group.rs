@@ -234,9 +234,9 @@ impl Group {
         let largest = lanes.store8(lanes.widen(largest));
         let mut factor = [0.0; WIDTH];
         for lane in 0..WIDTH {
-            // 2^-e and 2^e, where the largest component is in [2^(e - 1), 2^e).
+            // 2^-e and 2^e, where the largest component is in [2^(e - 1), 2^e); anything where it is not finite.
             let exponent = largest[lane].to_bits() >> 52;
-            factor[lane] = f64::from_bits((2045 - exponent) << 52);
+            factor[lane] = f64::from_bits(2045u64.wrapping_sub(exponent) << 52);
             out.scale[lane] = f64::from_bits((exponent + 1) << 52);
         }
         let factor = lanes.load8(&factor);

@@ -72,8 +72,12 @@ impl<'a> TriMesh<'a> {
     ///
     /// # Panics
     /// Where `triangle` is not below [`TriMesh::len`].
+    #[inline]
     pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
-        self.triangles[triangle as usize].map(|i| Vec3::from_array(self.vertices[i as usize]))
+        let [a, b, c] = self.triangles[triangle as usize];
+        // The function of arrays is not inlined, which loops over triangles would feel.
+        let vertex = |i: u32| Vec3::from_array(self.vertices[i as usize]);
+        [vertex(a), vertex(b), vertex(c)]
     }
 }
 

@@ -19,13 +19,11 @@ pub(crate) struct Analysis {
 
 impl Analysis {
     pub(crate) fn new(mesh: &TriMesh<'_>) -> Self {
-        let vertices = mesh.vertices();
-        let mut boxes = parallel::map(mesh.triangles(), |&[a, b, c]| {
-            let corner = |i: u32| Vec3::from_array(vertices[i as usize]);
-            let corners = [corner(a), corner(b), corner(c)];
+        let mut triangles: Vec<u32> = (0..mesh.len() as u32).collect();
+        let mut boxes = parallel::map(&triangles, |&i| {
+            let corners = mesh.corners(i);
             if is_degenerate(corners) { Aabb::EMPTY } else { Aabb::around(corners) }
         });
-        let mut triangles: Vec<u32> = (0..boxes.len() as u32).collect();
         if boxes.contains(&Aabb::EMPTY) {
             triangles.retain(|&i| boxes[i as usize] != Aabb::EMPTY);
             boxes.retain(|&b| b != Aabb::EMPTY);

@@ -117,15 +117,10 @@ fn gather(mesh: &TriMesh<'_>, analysis: &Analysis, run: &[u32]) -> Cluster {
     let ids = &mut ids[..run.len()];
     ids.sort_unstable();
     let mut triangles = [(u32::MAX, [Vec3::ZERO; 3]); WIDTH];
-    for (slot, &mut id) in triangles.iter_mut().zip(&mut *ids) {
-        let [a, b, c] = mesh.triangles()[id as usize];
-        *slot = (id, [vertex(mesh, a), vertex(mesh, b), vertex(mesh, c)]);
+    for (slot, &id) in triangles.iter_mut().zip(&*ids) {
+        *slot = (id, mesh.corners(id));
     }
     Cluster::new(&triangles[..run.len()])
-}
-
-fn vertex(mesh: &TriMesh<'_>, i: u32) -> Vec3 {
-    Vec3::from_array(mesh.vertices()[i as usize])
 }
 
 #[cfg(test)]

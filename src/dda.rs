@@ -151,29 +151,23 @@ impl FarPath {
         const FAR: f64 = 4096.0;
         let octant = ray.octant();
         let steepest = f64::from(ray.dir.abs().max_element());
-        let mut path = Self {
-            origin: [0.0; 4],
-            width: [1.0; 4],
-            clock: Clock { speed: steepest / grid.cell, zero: 0.0 },
-        };
-        let mut delay = 0f64;
+        let (mut origin, mut width, mut delay) = ([0.0; 4], [1.0; 4], 0f64);
         for axis in 0..3 {
             let speed = f64::from(ray.dir[axis]).abs().max(steepest * LEAST_SPEED);
-            path.width[axis] = steepest / speed;
+            width[axis] = steepest / speed;
             let place = advance(ray, axis, start, grid.lo[axis]) / grid.cell;
             let place = if octant >> axis & 1 != 0 { f64::from(grid.dims[axis]) - place } else { place };
             if place.is_nan() || place.abs() > FAR * f64::from(grid.longest()) {
                 return Err(TooFar);
             }
-            path.origin[axis] = place;
+            origin[axis] = place;
             // Rounding puts the start before the grid.
-            delay = delay.max(-place * path.width[axis]);
+            delay = delay.max(-place * width[axis]);
         }
         for axis in 0..3 {
-            path.origin[axis] += delay / path.width[axis];
+            origin[axis] += delay / width[axis];
         }
-        path.clock = Clock::new(path.clock.speed, start, delay);
-        Ok(path)
+        Ok(Self { origin, width, clock: Clock::new(steepest / grid.cell, start, delay) })
     }
 }
 

@@ -17,8 +17,7 @@
 //! 64 * 2^-24 E A B, of which [`EPS`] is twice as much.
 
 use crate::cluster::Cluster;
-use crate::lanes::{Lanes, axes};
-use crate::triangle::{Once, Vec3Lanes, cross, dot, minus, splat};
+use crate::lanes::{Lanes, Once, Vec3Lanes, axes, cross, dot, minus, splat};
 
 /// 2^-17.
 const EPS: f32 = 1.0 / (1u32 << 17) as f32;

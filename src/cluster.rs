@@ -7,9 +7,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::{BVec4A, Vec3, Vec4};
 
 use crate::aabb::Aabb;
-use crate::lanes::{Isa, Lanes, WIDTH, axes, dispatch};
+use crate::filter::{RayLanes, Scale, candidates};
+use crate::lanes::{Isa, Lanes, Vec3Lanes, WIDTH, axes, dispatch};
 use crate::ray::Ray;
-use crate::triangle::{RayLanes, Scale, Vec3Lanes, candidates};
 
 /// Up to eight triangles, for one ray at a time.
 ///

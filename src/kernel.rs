@@ -6,13 +6,11 @@
 use glam::Vec3;
 
 use crate::cluster::Cluster;
-use crate::lanes::{Lanes, axes};
+use crate::filter::{RayLanes, Scale, candidates};
+use crate::lanes::{Lanes, Once, Rounding, Twice, Vec3Lanes, axes, cross, dot, minus};
 use crate::query::EdgeRule;
 use crate::ray::Ray;
-use crate::triangle::{
-    Intersection, Once, RayLanes, Rounding, Scale, Twice, Vec3Lanes, candidates, clear_hit, cross, decide,
-    dot, minus,
-};
+use crate::triangle::{Intersection, clear_hit, decide};
 
 /// A way to intersect a ray with triangles, for [`Scene::query_with`](crate::Scene::query_with).
 ///

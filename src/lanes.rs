@@ -7,11 +7,17 @@
 //! whether an instruction set fuses a multiplication with an addition.
 
 mod double;
+#[cfg(test)]
+mod portable;
+mod vec3;
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
 pub(crate) use double::Doubles;
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f64x4, mask32x8, mask64x4};
+#[cfg(test)]
+pub(crate) use portable::Portable;
+pub(crate) use vec3::{Once, Rounding, Twice, Vec3Lanes, cross, dot, minus, splat};
 
 /// Lanes in one operation.
 pub(crate) const WIDTH: usize = 8;
@@ -303,120 +309,6 @@ impl std::fmt::Debug for Isa {
 impl PartialEq for Isa {
     fn eq(&self, other: &Self) -> bool {
         std::mem::discriminant(&self.0) == std::mem::discriminant(&other.0)
-    }
-}
-
-#[cfg(test)]
-pub(crate) use portable::Portable;
-
-/// The same over `wide`, as a reference for tests: compiled for one instruction set, not dispatched.
-#[cfg(test)]
-mod portable {
-    use super::{Lanes, WIDTH};
-
-    #[derive(Clone, Copy)]
-    pub(crate) struct Portable;
-
-    impl Lanes for Portable {
-        type F32 = wide::f32x8;
-        type Mask = wide::f32x8;
-
-        #[inline(always)]
-        fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
-            f()
-        }
-        #[inline(always)]
-        fn splat(self, x: f32) -> wide::f32x8 {
-            wide::f32x8::splat(x)
-        }
-        #[inline(always)]
-        fn load(self, x: &[f32; WIDTH]) -> wide::f32x8 {
-            wide::f32x8::from(*x)
-        }
-        #[inline(always)]
-        fn store(self, x: wide::f32x8) -> [f32; WIDTH] {
-            x.to_array()
-        }
-        #[inline(always)]
-        fn mul_add(self, a: wide::f32x8, b: wide::f32x8, c: wide::f32x8) -> wide::f32x8 {
-            a.mul_add(b, c)
-        }
-        #[inline(always)]
-        fn abs(self, x: wide::f32x8) -> wide::f32x8 {
-            x.abs()
-        }
-        #[inline(always)]
-        fn sign(self, x: wide::f32x8) -> wide::f32x8 {
-            self.splat(1.0).copysign(x)
-        }
-        #[inline(always)]
-        fn min(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
-            a.fast_min(b)
-        }
-        #[inline(always)]
-        fn max(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
-            a.fast_max(b)
-        }
-        #[inline(always)]
-        fn less(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
-            a.simd_lt(b)
-        }
-        #[inline(always)]
-        fn at_most(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
-            a.simd_le(b)
-        }
-        #[inline(always)]
-        fn bits(self, mask: wide::f32x8) -> u32 {
-            mask.to_bitmask()
-        }
-
-        type F64 = wide::f64x4;
-        type Mask4 = wide::f64x4;
-
-        #[inline(always)]
-        fn splat4(self, x: f64) -> wide::f64x4 {
-            wide::f64x4::splat(x)
-        }
-        #[inline(always)]
-        fn load4(self, x: &[f64; 4]) -> wide::f64x4 {
-            wide::f64x4::from(*x)
-        }
-        #[inline(always)]
-        fn store4(self, x: wide::f64x4) -> [f64; 4] {
-            x.into()
-        }
-        #[inline(always)]
-        fn abs4(self, x: wide::f64x4) -> wide::f64x4 {
-            x.abs()
-        }
-        #[inline(always)]
-        fn min4(self, a: wide::f64x4, b: wide::f64x4) -> wide::f64x4 {
-            a.min(b)
-        }
-        #[inline(always)]
-        fn max4(self, a: wide::f64x4, b: wide::f64x4) -> wide::f64x4 {
-            a.max(b)
-        }
-        #[inline(always)]
-        fn least4(self, x: wide::f64x4) -> f64 {
-            x.to_array().into_iter().fold(f64::INFINITY, f64::min)
-        }
-        #[inline(always)]
-        fn greatest4(self, x: wide::f64x4) -> f64 {
-            x.to_array().into_iter().fold(f64::NEG_INFINITY, f64::max)
-        }
-        #[inline(always)]
-        fn less4(self, a: wide::f64x4, b: wide::f64x4) -> wide::f64x4 {
-            a.simd_lt(b)
-        }
-        #[inline(always)]
-        fn select4(self, mask: wide::f64x4, a: wide::f64x4, b: wide::f64x4) -> wide::f64x4 {
-            mask.select(a, b)
-        }
-        #[inline(always)]
-        fn bits4(self, mask: wide::f64x4) -> u32 {
-            mask.to_bitmask()
-        }
     }
 }
 

@@ -12,6 +12,7 @@ pub mod descent;
 mod exact;
 #[cfg(feature = "file")]
 mod file;
+mod filter;
 mod hit;
 mod kernel;
 mod lanes;

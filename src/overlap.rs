@@ -5,8 +5,7 @@
 //! comparison is widened by the bound of its rounding error, so that "no overlap" is certain.
 
 use crate::aabb::Aabb;
-use crate::lanes::{Lanes, axes};
-use crate::triangle::{Twice, Vec3Lanes, cross, dot, minus, splat};
+use crate::lanes::{Lanes, Twice, Vec3Lanes, axes, cross, dot, minus, splat};
 
 /// The lanes whose triangle may overlap `bounds`, as bits.
 ///

@@ -1,6 +1,6 @@
 //! One triangle, prepared for many packets of eight rays.
 //!
-//! The same tests as in [`crate::triangle`], in another order: with s = o - v0, n = e1 x e2 and r = s x d
+//! The same tests as in [`crate::filter`], in another order: with s = o - v0, n = e1 x e2 and r = s x d
 //!
 //! ```text
 //! det = d.n    w1 = -e2.r    w2 = e1.r    e2.q = -s.n
@@ -9,14 +9,14 @@
 //! so that what depends on the triangle alone is computed once, and 18 multiplications a ray are left.
 //!
 //! # Errors
-//! The triple products have as many roundings as those of [`candidates`](crate::triangle::candidates): 42 u
+//! The triple products have as many roundings as those of [`candidates`](crate::filter::candidates): 42 u
 //! for det, w1 and w2 and 48 u for e2.q, relative to the products of the largest components. So its bounds
 //! hold here too.
 
 use glam::{DVec3, Vec3};
 
-use crate::lanes::{Doubles, Lanes, WIDTH};
-use crate::triangle::{Once, RayLanes, Vec3Lanes, cross, dot, minus, splat};
+use crate::filter::{Products, RayLanes, TINY, possible, size};
+use crate::lanes::{Doubles, Lanes, Once, Vec3Lanes, WIDTH, cross, dot, minus, splat};
 
 /// A triangle in all lanes.
 #[derive(Clone, Copy)]
@@ -25,19 +25,16 @@ pub(crate) struct Prepared<L: Lanes> {
     e1: Vec3Lanes<L>,
     e2: Vec3Lanes<L>,
     normal: Vec3Lanes<L>,
-    /// E, and a little more, which covers what underflows.
+    /// E with [`TINY`] added.
     size: L::F32,
 }
-
-/// 2^-21: with the factor 16 of [`RayLanes::bound`], the bound of the errors.
-const EPS: f32 = 1.0 / (1u32 << 21) as f32;
 
 impl<L: Lanes> Prepared<L> {
     #[inline(always)]
     pub(crate) fn new(lanes: L, [v0, v1, v2]: [Vec3; 3]) -> Self {
         let (e1, e2) = (v1 - v0, v2 - v0);
         let normal = e1.cross(e2);
-        let size = e1.abs().max(e2.abs()).max_element() + 2f32.powi(-40);
+        let size = e1.abs().max(e2.abs()).max_element() + TINY;
         Self {
             corner: splat(lanes, v0),
             e1: splat(lanes, e1),
@@ -54,25 +51,9 @@ impl<L: Lanes> Prepared<L> {
         let d = ray.dir;
         let r = cross::<Once, L>(lanes, s, d);
         let det = dot::<Once, L>(lanes, d, self.normal);
-        let (abs, sign) = (lanes.abs(det), lanes.sign(det));
-        let (w1, w2) =
-            (-(sign * dot::<Once, L>(lanes, self.e2, r)), sign * dot::<Once, L>(lanes, self.e1, r));
-        let numerator = -(sign * dot::<Once, L>(lanes, s, self.normal));
-        let a = lanes.max(lanes.max(lanes.abs(s[0]), lanes.abs(s[1])), lanes.abs(s[2]));
-        let eps = lanes.splat(EPS);
-        let de = ray.bound * self.size;
-        let ee = de * self.size;
-        let det_slack = eps * ee;
-        let slack = lanes.mul_add(eps, de * a, det_slack);
-        let least = lanes.min(lanes.min(w1, w2), abs - (w1 + w2));
-        let outside = lanes.less(least + slack, lanes.splat(0.0));
-        let (eea, tiny) = (ee * a, lanes.splat(2f32.powi(-97)) * self.size);
-        let late = lanes.mul_add(eps, lanes.mul_add(ee, lanes.abs(ray.t_max), eea), tiny);
-        let early = lanes.mul_add(eps, lanes.mul_add(ee, lanes.abs(ray.t_min), eea), tiny);
-        let beyond = lanes.less(lanes.mul_add(ray.t_max, abs, late), numerator)
-            | lanes.less(numerator + early, ray.t_min * abs);
-        let certain = lanes.less(det_slack, abs);
-        !lanes.bits(outside | (beyond & certain)) & 0xff
+        let w = [-dot::<Once, L>(lanes, self.e2, r), dot::<Once, L>(lanes, self.e1, r)];
+        let numerator = -dot::<Once, L>(lanes, s, self.normal);
+        possible(lanes, ray, &Products { det, w, numerator, a: size(lanes, s), e: self.size })
     }
 }
 

@@ -7,9 +7,8 @@ use glam::{Vec3, Vec4};
 use crate::aabb::Aabb;
 use crate::arena::Grid;
 use crate::cluster::Cluster;
-use crate::lanes::{Lanes, WIDTH};
+use crate::lanes::{Lanes, Vec3Lanes, WIDTH};
 use crate::overlap::overlapping;
-use crate::triangle::Vec3Lanes;
 
 /// A cluster in a voxel.
 #[derive(Clone, Copy, Debug)]

@@ -3,13 +3,14 @@
 //! Eight rays against one triangle at a time, the other direction of the kernel than in a structure.
 
 use super::scan::Answer;
+use crate::filter::{RayLanes, candidates};
 use crate::hit::Hit;
 use crate::lanes::{Isa, Lanes, dispatch};
 use crate::mesh::TriMesh;
 use crate::parallel;
 use crate::query::EdgeRule;
 use crate::ray::{Ray, RayPacket};
-use crate::triangle::{RayLanes, candidates, intersect};
+use crate::triangle::intersect;
 
 /// The answers to all three queries for each ray.
 pub fn answers(mesh: &TriMesh<'_>, rays: &[Ray]) -> Vec<Answer> {

@@ -24,11 +24,12 @@ use super::group::{Group, SCALED};
 use crate::arena::{Arena, BoxGroup, Voxel};
 use crate::bundle::Bundle;
 use crate::cluster::Cluster;
+use crate::filter::{RayLanes, candidates};
 use crate::lanes::{Doubles, WIDTH};
 use crate::prepared::{Hits, Prepared, intersect8};
 use crate::query::EdgeRule;
 use crate::ray::Ray;
-use crate::triangle::{RayLanes, candidates, intersect};
+use crate::triangle::intersect;
 
 /// Clusters tested last, with the rays that have been tested.
 struct Mailbox {

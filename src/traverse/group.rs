@@ -14,11 +14,11 @@
 use glam::Vec3;
 
 use crate::arena::Grid;
+use crate::filter::RayLanes;
 use crate::hit::Hit;
 use crate::lanes::{Doubles, Lanes, WIDTH};
 use crate::prepared::Hits;
 use crate::ray::Ray;
-use crate::triangle::RayLanes;
 
 /// The most rays of a group.
 pub(crate) const GROUP: usize = 64;

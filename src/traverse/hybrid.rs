@@ -16,8 +16,8 @@ use super::brick::{BrickPath, mirror, mirror_index};
 use super::{Visit, Walker};
 use crate::arena::{Arena, BRICK_LEVELS, BoxGroup, Voxel, VoxelWord};
 use crate::dda::{Clock, Dda, Limit, Path};
-use crate::lanes::{Lanes, axes};
-use crate::triangle::{Vec3Lanes, above};
+use crate::filter::above;
+use crate::lanes::{Lanes, Vec3Lanes, axes};
 
 /// The walk.
 pub(crate) struct Hybrid;

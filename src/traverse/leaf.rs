@@ -5,12 +5,12 @@ use std::ops::ControlFlow;
 
 use super::Visit;
 use crate::arena::Arena;
+use crate::filter::{RayLanes, Scale};
 use crate::hit::Hit;
 use crate::kernel::{Subject, Test};
 use crate::lanes::Lanes;
 use crate::query::Query;
 use crate::ray::Ray;
-use crate::triangle::{RayLanes, Scale};
 
 /// Clusters tested last, which need no second test.
 ///

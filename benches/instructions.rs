@@ -240,24 +240,39 @@ fn kernel_decision((_, _, _, ray, corners): (Isa, Cluster, RayPacket, Ray, [Vec3
     black_box(intersect(black_box(&ray), black_box(corners), EdgeRule::Closed).map_or(0, |at| at.t.to_bits()))
 }
 
-/// Sixteen rays into the room, through neighbouring pixels or every way, and their hits one by one.
-fn packets(together: bool) -> (Scene, [RayPacket; 2]) {
-    let (scene, rays, _) = room(Structure::HYBRID, Walk::Special, Query::Closest);
-    let rays: Vec<Ray> = if together {
-        let dir = |i: u16| Vec3::new(0.01 * f32::from(i % 4), 0.01 * f32::from(i / 4), 1.0);
-        (0..16).map(|i| Ray { dir: dir(i), ..rays[0] }).collect()
-    } else {
-        rays[..16].to_vec()
+/// How sixteen rays go.
+#[derive(Clone, Copy)]
+enum Sixteen {
+    /// Through neighbouring pixels of a room.
+    Together,
+    /// Every way through it.
+    Apart,
+    /// Together, but for the size of the small object in a large scene that they meet.
+    AtASmallObject,
+}
+
+/// The rays, and their hits one by one.
+fn sixteen(sixteen: Sixteen) -> (Scene, [RayPacket; 2]) {
+    let room = Case::new(if let Sixteen::AtASmallObject = sixteen { "stadium" } else { "room" }, 20_000);
+    let rays = match sixteen {
+        Sixteen::Together => {
+            let dir = |i: u16| Vec3::new(0.01 * f32::from(i % 4), 0.01 * f32::from(i / 4), 1.0);
+            (0..16).map(|i| Ray { dir: dir(i), ..room.rays[0] }).collect()
+        }
+        Sixteen::Apart => room.rays[room.rays.len() - 16..].to_vec(),
+        Sixteen::AtASmallObject => room.rays[5040..5056].to_vec(),
     };
+    let scene = room.scene_with(Structure::HYBRID, Walk::Special);
     let packets = [RayPacket::new(&rays), RayPacket::new(&rays[8..])];
     let hits = scene.closest_packet(&packets);
     assert!((0..16).all(|i| hits[i / 8].get(i % 8) == scene.closest(&rays[i])));
     (scene, packets)
 }
 
-#[library_benchmark(setup = packets)]
-#[bench::together(true)]
-#[bench::apart(false)]
+#[library_benchmark(setup = sixteen)]
+#[bench::together(Sixteen::Together)]
+#[bench::apart(Sixteen::Apart)]
+#[bench::at_a_small_object(Sixteen::AtASmallObject)]
 fn sixteen_rays((scene, packets): (Scene, [RayPacket; 2])) -> u32 {
     black_box(black_box(&scene).closest_packet(black_box(&packets))[1].get(7).prim)
 }

@@ -98,6 +98,8 @@ struct Stream<'a, A> {
     answers: A,
     group: Group,
     gather: Gather,
+    /// Rays gathered in this block that were not to be traced together.
+    refused: usize,
 }
 
 impl<A: Answers> Stream<'_, A> {
@@ -130,7 +132,7 @@ impl<A: Answers> Stream<'_, A> {
         (0..WIDTH).for_each(|slot| self.close(slot));
     }
 
-    /// Traces neighbours together; false where they don't go alike, and nothing was done.
+    /// Traces neighbours together; false where they don't go alike, and nothing is answered.
     fn run_of_rays(&mut self, at: usize, end: usize) -> bool {
         let rays = &self.rays[at..end];
         let together =
@@ -145,6 +147,7 @@ impl<A: Answers> Stream<'_, A> {
     fn gather(&mut self, at: usize, end: usize) -> bool {
         dispatch!(self.scene.options.isa, lanes => {
             let mut opened = 0;
+            self.refused = 0;
             for i in at..end {
                 let ray = &self.rays[i];
                 let slot = match self.gather.find(lanes, ray) {
@@ -161,7 +164,7 @@ impl<A: Answers> Stream<'_, A> {
                     self.close(slot);
                 }
             }
-            opened * FEWEST <= end - at
+            opened * FEWEST <= end - at && 2 * self.refused <= end - at
         })
     }
 
@@ -172,6 +175,9 @@ impl<A: Answers> Stream<'_, A> {
         let members = &self.gather.rays[slot][..len];
         let ray = |i: usize| self.rays[members[i] as usize];
         let together = len >= FEWEST && trace::<A>(self.scene, &mut self.group, len, ray);
+        if len >= FEWEST && !together {
+            self.refused += len;
+        }
         for (i, &at) in members.iter().enumerate() {
             let at = at as usize;
             if together {
@@ -183,7 +189,7 @@ impl<A: Answers> Stream<'_, A> {
     }
 }
 
-/// Traces rays together; false where they don't go alike, and nothing was done.
+/// Traces rays together; false where they don't go alike, and nothing is answered.
 fn trace<A: Answers>(scene: &Scene, group: &mut Group, len: usize, ray: impl Fn(usize) -> Ray) -> bool {
     group.load(len, ray);
     let (isa, arena) = (scene.options.isa, &scene.arena);
@@ -197,5 +203,5 @@ fn trace<A: Answers>(scene: &Scene, group: &mut Group, len: usize, ray: impl Fn(
 fn stream<A: Answers>(scene: &Scene, rays: &[Ray], answers: A) {
     let grid = &scene.arena.grid;
     let gather = Gather::new(grid.cell * f64::from(grid.longest()));
-    Stream { scene, rays, answers, group: Group::new(), gather }.run();
+    Stream { scene, rays, answers, group: Group::new(), gather, refused: 0 }.run();
 }

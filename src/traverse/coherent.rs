@@ -57,6 +57,11 @@ impl Mailbox {
 /// Groups that spread farther, in sizes of the grid, are not traced together.
 const WIDEST: f32 = 0.2;
 
+/// What a group may do for each of its rays: visit a voxel, test a group of boxes, or test a box against its
+/// rays. Where it does more, as with rays that are far apart in the scale of what they meet, they are faster
+/// alone.
+const EFFORT: u32 = 8;
+
 /// Traces a group.
 pub(crate) struct Coherent<'a, L, const ANY: bool> {
     lanes: L,
@@ -66,10 +71,12 @@ pub(crate) struct Coherent<'a, L, const ANY: bool> {
     frustum: Frustum,
     bundle: Bundle,
     changed: bool,
+    /// What of the [`EFFORT`] is left.
+    effort: u32,
 }
 
 impl<'a, L: Doubles, const ANY: bool> Coherent<'a, L, ANY> {
-    /// Traces a group; false where it spreads too far, and nothing was done.
+    /// Traces a group; false where it spreads too far, and its hits mean nothing.
     #[inline(always)]
     pub(crate) fn run(lanes: L, arena: &'a Arena, group: &'a mut Group) -> bool {
         let longest = arena.grid.longest() as f32;
@@ -78,10 +85,18 @@ impl<'a, L: Doubles, const ANY: bool> Coherent<'a, L, ANY> {
             return false;
         }
         let bundle = frustum.bundle(&arena.grid);
+        let effort = EFFORT * group.len as u32;
         let mailbox = Mailbox { recent: [(u32::MAX, 0); 8], next: 0 };
-        let mut walk = Self { lanes, arena, group, mailbox, frustum, bundle, changed: false };
+        let mut walk = Self { lanes, arena, group, mailbox, frustum, bundle, changed: false, effort };
         walk.slices();
-        true
+        walk.effort > 0
+    }
+
+    /// Does a part of the effort; false where there was none left.
+    #[inline(always)]
+    fn spend(&mut self) -> bool {
+        self.effort = self.effort.saturating_sub(1);
+        self.effort > 0
     }
 
     /// Slice after slice of the top grid.
@@ -113,6 +128,9 @@ impl<'a, L: Doubles, const ANY: bool> Coherent<'a, L, ANY> {
                 if let (Some(us), Some(vs)) = (range(0), range(1)) {
                     for j in vs {
                         for i in us.clone() {
+                            if !self.spend() {
+                                return;
+                            }
                             let index = slice * strides[main] + i * strides[u] + j * strides[v];
                             match self.arena.words[index as usize].get() {
                                 Voxel::Empty => {}
@@ -178,6 +196,9 @@ impl<'a, L: Doubles, const ANY: bool> Coherent<'a, L, ANY> {
                 SPREAD[main][1 << slice] & SPREAD[u][range(0, u) as usize] & SPREAD[v][range(1, v) as usize];
             let mut mask = mask & brick.occupied;
             while mask != 0 {
+                if !self.spend() {
+                    return;
+                }
                 let bit = mask.trailing_zeros();
                 mask &= mask - 1;
                 let word = brick.first + (brick.occupied & ((1 << bit) - 1)).count_ones();
@@ -206,10 +227,16 @@ impl<'a, L: Doubles, const ANY: bool> Coherent<'a, L, ANY> {
     fn leaf(&mut self, first: u32) {
         let arena = self.arena;
         for group in &arena.groups[first as usize..] {
+            if !self.spend() {
+                return;
+            }
             let mut met = self.frustum.boxes(self.lanes, group);
             while met != 0 {
                 let lane = met.trailing_zeros() as usize;
                 met &= met - 1;
+                if !self.spend() {
+                    return;
+                }
                 let rays = self.meet(group, lane);
                 if rays == 0 {
                     continue;

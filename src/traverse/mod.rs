@@ -122,7 +122,7 @@ fn every_cluster<V: Visit>(arena: &Arena, visit: &mut V) {
     let _ = (0..arena.clusters.len() as u32).try_for_each(|index| visit.cluster(index));
 }
 
-/// Traces the rays of a group together; false where they don't go alike, and nothing was done.
+/// Traces the rays of a group together; false where they don't go alike, and its hits mean nothing.
 #[inline(never)]
 pub(crate) fn group<const ANY: bool>(isa: Isa, arena: &Arena, group: &mut Group) -> bool {
     if arena.form != Form::Bricks {

@@ -12,7 +12,9 @@ use cases::{Case, Query, run};
 use glam::Vec3;
 use gungraun::{library_benchmark, library_benchmark_group, main};
 use octogrid::descent::{General, Halves, Walk, first_exit};
-use octogrid::{Cluster, EdgeRule, Isa, Ray, RayPacket, Scene, Structure, intersect};
+use octogrid::{
+    BuildOptions, Cluster, EdgeRule, Forced, Isa, Part, Ray, RayPacket, Scene, Structure, intersect,
+};
 
 /// When a ray enters a divided voxel: exits, widths, time, rising axes.
 type Entry = ([f64; 3], [f64; 3], f64, u32);
@@ -158,7 +160,7 @@ fn step_halves((_, parts, step): (Vec<(General<2>, u32)>, Vec<(Halves, u32)>, St
 /// `room` with few rays: valgrind is slow.
 fn room(structure: Structure, walk: Walk, query: Query) -> (Scene, Vec<Ray>, Query) {
     let case = Case::new("room", 256);
-    (case.scene_with(structure, walk), case.rays, query)
+    (case.scene_with(&BuildOptions { walk, ..structure.into() }), case.rays, query)
 }
 
 #[library_benchmark(setup = room)]
@@ -171,7 +173,7 @@ fn same_octree((scene, rays, query): (Scene, Vec<Ray>, Query)) -> u64 {
 /// Rays that end at their hit, so that a walk over them needs no test to know where to stop.
 fn ended(walk: Walk) -> (Scene, Vec<Ray>) {
     let case = Case::new("room", 256);
-    let scene = case.scene_with(Structure::OCTREE, walk);
+    let scene = case.scene_with(&BuildOptions { walk, ..Structure::OCTREE.into() });
     let rays = case.rays.iter().map(|r| r.with_interval(0.0, scene.closest(r).t)).collect();
     (scene, rays)
 }
@@ -206,6 +208,24 @@ fn same_octree_without_tests((scene, rays): (Scene, Vec<Ray>)) -> u32 {
 #[bench::hybrid_all(Structure::HYBRID, Walk::Special, Query::All)]
 fn structures((scene, rays, query): (Scene, Vec<Ray>, Query)) -> u64 {
     black_box(run(black_box(&scene), query, black_box(&rays)))
+}
+
+/// A scene as its plan says, or with all parts of a structure.
+fn planned(name: &'static str, all: bool) -> (Scene, Vec<Ray>) {
+    let case = Case::new(name, 256);
+    let with = |forced: Forced, part| if all { forced.with(part, true) } else { forced };
+    let forced = Part::ALL.into_iter().fold(Forced::default(), with);
+    (case.scene_with(&BuildOptions { forced, ..Default::default() }), case.rays)
+}
+
+#[library_benchmark(setup = planned)]
+#[bench::few_triangles("cube", false)]
+#[bench::few_triangles_with_all_parts("cube", true)]
+#[bench::evenly_spread("torus", false)]
+#[bench::evenly_spread_with_all_parts("torus", true)]
+#[bench::crowded("stadium", false)]
+fn plan((scene, rays): (Scene, Vec<Ray>)) -> u64 {
+    black_box(run(black_box(&scene), Query::Closest, black_box(&rays)))
 }
 
 /// A cluster of triangles in front of a ray, one of them in its way.
@@ -262,7 +282,7 @@ fn sixteen(sixteen: Sixteen) -> (Scene, [RayPacket; 2]) {
         Sixteen::Apart => room.rays[room.rays.len() - 16..].to_vec(),
         Sixteen::AtASmallObject => room.rays[5040..5056].to_vec(),
     };
-    let scene = room.scene_with(Structure::HYBRID, Walk::Special);
+    let scene = room.scene(Structure::HYBRID);
     let packets = [RayPacket::new(&rays), RayPacket::new(&rays[8..])];
     let hits = scene.closest_packet(&packets);
     assert!((0..16).all(|i| hits[i / 8].get(i % 8) == scene.closest(&rays[i])));
@@ -282,7 +302,10 @@ library_benchmark_group!(
     benchmarks = [descend_general_2, descend_general_4, descend_halves]
 );
 library_benchmark_group!(name = steps, benchmarks = [step_general_2, step_halves]);
-library_benchmark_group!(name = walks, benchmarks = [same_octree, same_octree_without_tests, structures]);
+library_benchmark_group!(
+    name = walks,
+    benchmarks = [same_octree, same_octree_without_tests, structures, plan]
+);
 library_benchmark_group!(name = kernels, benchmarks = [kernel_ray, kernel_packet, kernel_decision]);
 library_benchmark_group!(name = packed, benchmarks = [sixteen_rays]);
 

@@ -14,7 +14,7 @@ fn builds(c: &mut Criterion) {
         let mut group = c.benchmark_group(format!("build/{name}"));
         group.throughput(Throughput::Elements(mesh.len() as u64)).sample_size(10);
         for structure in Structure::ALL {
-            let options = BuildOptions { structure, ..Default::default() };
+            let options = BuildOptions { structure: Some(structure), ..Default::default() };
             case.scene(structure);
             group.bench_function(structure.name(), |b| b.iter(|| Scene::build(&mesh, &options)));
         }

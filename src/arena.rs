@@ -7,9 +7,12 @@
 //!   together, x fastest, and its leaves are runs of [`Reference`]s to clusters;
 //! - a **brick** structure (hybrid) keeps only the occupied ones of the 64, behind a [`Brick`] with
 //!   their mask, and its leaves are runs of [`BoxGroup`]s.
+//!
+//! Brute force has clusters alone: a list structure of one level without words.
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::aabb::Aabb;
 use crate::cluster::Cluster;
 use crate::lanes::WIDTH;
 
@@ -128,6 +131,9 @@ pub(crate) struct GridAxes {
     pub(crate) lo: [f64; 4],
     /// The width.
     pub(crate) size: [f64; 4],
+    /// Where the box around the scene begins and ends, from either side of the grid.
+    pub(crate) near: [f64; 4],
+    pub(crate) far: [f64; 4],
     /// The number of voxels.
     pub(crate) dims: [f64; 4],
     /// The distance in `words` between neighbours.
@@ -142,11 +148,30 @@ impl Grid {
         let axes = GridAxes {
             lo: [lo[0], lo[1], lo[2], 0.0],
             size: [x * cell, y * cell, z * cell, f64::INFINITY],
+            near: [0.0; 4],
+            far: [x * cell, y * cell, z * cell, f64::INFINITY],
             dims: [x, y, z, 1.0],
             strides: [1.0, x, x * y, 0.0],
             per_length: 1.0 / cell,
         };
         Self { lo, cell, dims, axes }
+    }
+
+    /// The same with a box around the scene that is no larger than the scene by much: it begins on both sides where
+    /// the wider one of two margins ends, but for 2^-32 of the grid's width, for rounding.
+    pub(crate) fn fitted(mut self, bounds: &Aabb) -> Self {
+        for axis in 0..3 {
+            let size = self.axes.size[axis];
+            let below = f64::from(bounds.lo[axis]) - self.lo[axis];
+            let above = size - (f64::from(bounds.hi[axis]) - self.lo[axis]);
+            let near = below.min(above) - size / (1u64 << 32) as f64;
+            // A scene without triangles has infinite bounds.
+            if near > 0.0 && near.is_finite() {
+                self.axes.near[axis] = near;
+                self.axes.far[axis] = size - near;
+            }
+        }
+        self
     }
 
     /// The number of voxels.
@@ -190,6 +215,9 @@ pub(crate) enum Form {
 }
 
 impl Form {
+    /// That of clusters without voxels.
+    pub(crate) const BRUTE: Self = Self::Lists { divisions: 1 };
+
     /// The number of parts along each axis of a divided voxel.
     pub(crate) fn divisions(self) -> u32 {
         match self {
@@ -218,6 +246,23 @@ pub(crate) struct Arena {
 }
 
 impl Arena {
+    /// Nothing yet.
+    pub(crate) fn new(grid: Grid, form: Form) -> Self {
+        let (clusters, words, references, bricks, groups) = Default::default();
+        Self { grid, form, clusters, words, references, bricks, groups }
+    }
+
+    /// Whether there are no voxels, only clusters.
+    pub(crate) fn is_brute(&self) -> bool {
+        self.form == Form::BRUTE && self.words.is_empty()
+    }
+
+    /// The box around all triangles.
+    pub(crate) fn bounds(&self) -> Aabb {
+        let boxes = self.clusters.iter().map(|cluster| cluster.bounds(cluster.occupied()));
+        boxes.fold(Aabb::EMPTY, Aabb::union)
+    }
+
     /// Bytes by kind.
     pub(crate) fn bytes_by_kind(&self) -> [(&'static str, usize); 5] {
         [

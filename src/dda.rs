@@ -26,7 +26,7 @@ pub(crate) const LIST_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 /// The margin of the voxels and boxes of a structure of bricks, whose times are f32.
 pub(crate) const BRICK_MARGIN: f64 = 1.0 / (1u64 << 19) as f64;
 
-/// The part of a ray from where it enters the grid; an axis a lane.
+/// The part of a ray from where it enters the scene's box or the grid; an axis a lane.
 #[derive(Clone, Copy)]
 pub(crate) struct Path<L: Lanes> {
     /// Where it starts, in cells of the mirrored grid.
@@ -51,7 +51,7 @@ pub(crate) enum Clip<L: Lanes> {
 }
 
 impl<L: Lanes> Path<L> {
-    /// Clips a ray to the grid; one that is not valid misses.
+    /// Clips a ray to the scene's box in the grid, or to the grid; one that is not valid misses.
     #[inline(always)]
     pub(crate) fn clip(lanes: L, ray: &Ray, grid: &Grid) -> Clip<L> {
         // Origins so near, in sizes of the grid, that rounding stays within what the grid is larger than
@@ -74,8 +74,9 @@ impl<L: Lanes> Path<L> {
         let least = steepest * LEAST_SPEED;
         let speeds = lanes.max4(lanes.abs4(dir), lanes.load4(&[least, least, least, 0.0]));
         let inverse = lanes.splat4(1.0) / speeds;
-        let start = lanes.greatest4(-position * inverse);
-        let end = lesser(lanes.least4((size - position) * inverse), rounds_to(ray.t_max));
+        let (near, far) = (lanes.load4(&grid.axes.near), lanes.load4(&grid.axes.far));
+        let start = lanes.greatest4((near - position) * inverse);
+        let end = lesser(lanes.least4((far - position) * inverse), rounds_to(ray.t_max));
         // Not where t_max is NaN.
         let meets = start <= end;
         if !meets {

@@ -133,13 +133,13 @@ impl Halves {
     }
 }
 
-/// Which descent the walk through an octree uses. Both give the same answers.
+/// Whether a walk is one for this structure or for all of its kind. Both give the same answers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Walk {
-    /// [`Halves`].
+    /// Octrees by [`Halves`]; hybrids without the code for bricks where there are none.
     #[default]
     Special,
-    /// [`General`], for comparison.
+    /// Octrees by [`General`], hybrids with the code for bricks: for comparison.
     General,
 }
 

@@ -37,7 +37,8 @@ mod triangle;
 mod validate;
 
 pub use build::{
-    BuildError, BuildOptions, HybridParams, OctreeParams, RecursiveParams, Structure, UniformParams,
+    BuildError, BuildOptions, Decision, Forced, HybridParams, OctreeParams, Part, Plan, RecursiveParams,
+    SceneProfile, Structure, UniformParams,
 };
 pub use cluster::Cluster;
 #[cfg(feature = "file")]

@@ -57,7 +57,7 @@ impl Scene {
         let group = if len >= FEWEST && point_alike(&rays[..len]) {
             let mut group = Group::new();
             group.load(len, |i| rays[i]);
-            traverse::group::<ANY>(self.options.isa, &self.arena, &mut group).then_some(group)
+            traverse::group::<ANY>(self.isa, &self.arena, &mut group).then_some(group)
         } else {
             None
         };

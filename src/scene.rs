@@ -3,11 +3,12 @@
 use std::ops::ControlFlow;
 
 use crate::arena::Arena;
-use crate::build::{self, BuildError, BuildOptions, Structure};
+use crate::build::{self, BuildError, BuildOptions, Part, Structure};
 use crate::cluster::Cluster;
 use crate::descent::Walk;
 use crate::hit::Hit;
 use crate::kernel::{Double, Exact, Fused, Kernel, Plain, Test};
+use crate::lanes::Isa;
 use crate::mesh::TriMesh;
 use crate::query::{All, Any, Closest, Query};
 use crate::ray::Ray;
@@ -31,7 +32,9 @@ use crate::validate::{self, Statistics, Violation};
 #[derive(Clone, Debug)]
 pub struct Scene {
     pub(crate) arena: Arena,
-    pub(crate) options: BuildOptions,
+    pub(crate) structure: Structure,
+    pub(crate) isa: Isa,
+    pub(crate) walk: Walk,
     pub(crate) triangles: usize,
 }
 
@@ -50,7 +53,16 @@ impl Scene {
     /// # Errors
     /// [`BuildError`] where a parameter is out of its range or the memory limit does not suffice.
     pub fn build(mesh: &TriMesh<'_>, options: &BuildOptions) -> Result<Self, BuildError> {
-        Ok(Self { arena: build::build(mesh, options)?, options: *options, triangles: mesh.len() })
+        let (structure, arena) = build::build(mesh, options)?;
+        Ok(Self::of(arena, structure, mesh.len(), options))
+    }
+
+    pub(crate) fn of(arena: Arena, structure: Structure, triangles: usize, options: &BuildOptions) -> Self {
+        // Recursive grids have no special walk, and a part that is asked for costs what it costs.
+        let general =
+            matches!(structure, Structure::Recursive(_)) || options.forced.get(Part::Bricks) == Some(true);
+        let walk = if general { Walk::General } else { options.walk };
+        Self { arena, structure, isa: options.isa, walk, triangles }
     }
 
     /// The closest hit, or [`Hit::MISS`]; of hits with the same t the one with the least index.
@@ -118,7 +130,7 @@ impl Scene {
     }
 
     fn run<K: Test, Q: Query>(&self, ray: &Ray, query: &mut Q) {
-        traverse::query::<K, Q>(self.options.isa, &self.arena, self.walk(), ray, query);
+        traverse::query::<K, Q>(self.isa, &self.arena, self.walk, ray, query);
     }
 
     /// Visits the clusters near a ray voxel by voxel, without testing them: for intersection tests of
@@ -141,14 +153,7 @@ impl Scene {
     /// ```
     pub fn clusters_along(&self, ray: &Ray, each: impl FnMut(&Cluster) -> ControlFlow<()>) {
         let mut clusters = Each { arena: &self.arena, t_max: ray.t_max, each };
-        traverse::visit(self.options.isa, &self.arena, self.walk(), ray, &mut clusters);
-    }
-
-    fn walk(&self) -> Walk {
-        match self.options.structure {
-            Structure::Octree(_) => self.options.walk,
-            _ => Walk::General,
-        }
+        traverse::visit(self.isa, &self.arena, self.walk, ray, &mut clusters);
     }
 
     /// The number of triangles of the mesh.
@@ -158,7 +163,7 @@ impl Scene {
 
     /// The structure and its parameters.
     pub fn structure(&self) -> Structure {
-        self.options.structure
+        self.structure
     }
 
     /// The bytes that the structure holds, triangles included.

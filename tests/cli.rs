@@ -92,6 +92,49 @@ fn analyze_compares_the_structures() {
 }
 
 #[test]
+fn analyze_tells_what_is_left_out_and_why() {
+    let folder = Folder::new();
+    let run = folder.run(&["analyze", "cube"]);
+    for part in
+        ["Plan: brute force", "voxels     left out  12 triangles: up to 40", "with all parts 99.0 bytes"]
+    {
+        assert!(run.stdout.contains(part), "{part} in {}", run.stdout);
+    }
+    let run = folder.run(&["analyze", "room", "--force", "fine-grid=off,bricks=on"]);
+    for part in ["Plan: hybrid[0.1,8]", "fine-grid  left out  as asked", "bricks     kept      as asked"] {
+        assert!(run.stdout.contains(part), "{part} in {}", run.stdout);
+    }
+}
+
+#[test]
+fn forced_parts_change_no_pixel() {
+    let folder = Folder::new();
+    let picture = |force: &[&str]| {
+        let args = [&["render", "room", "--size", "40x30", "-o", "room.png"], force].concat();
+        let run = folder.run(&args);
+        assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+        std::fs::read(folder.path("room.png")).unwrap()
+    };
+    let planned = picture(&[]);
+    for force in ["voxels=off", "bricks=on", "fine-grid=off", "bricks=on,fine-grid=off"] {
+        assert!(picture(&["--force", force]) == planned, "{force}");
+    }
+}
+
+#[test]
+fn parts_that_are_not_there_are_no_parts() {
+    let folder = Folder::new();
+    for (force, what) in
+        [("boxes=on", "no part 'boxes': there are voxels"), ("bricks=no", "must be on or off")]
+    {
+        let run = folder.run(&["analyze", "cube", "--force", force]);
+        assert!(run.code == Some(2) && run.stderr.contains(what), "{}", run.stderr);
+    }
+    let run = folder.run(&["render", "cube", "--structure", "octree", "--force", "bricks=on"]);
+    assert!(run.code == Some(2) && run.stderr.contains("--force needs the structure auto"), "{}", run.stderr);
+}
+
+#[test]
 fn built_in_scenes_are_listed_and_written() {
     let folder = Folder::new();
     let run = folder.run(&["scene", "--list"]);

@@ -45,7 +45,7 @@ fn hazards_are_harmless() {
 }
 
 fn build(mesh: &TriMesh<'_>, structure: Structure, memory_limit: usize) -> Result<Scene, BuildError> {
-    Scene::build(mesh, &BuildOptions { structure, memory_limit, ..Default::default() })
+    Scene::build(mesh, &BuildOptions { structure: Some(structure), memory_limit, ..Default::default() })
 }
 
 /// A build that its limit does not allow for says so.

@@ -9,8 +9,7 @@ use std::io::{self, ErrorKind, Read};
 use octogrid::oracle::meshes::{Mesh, closed_mesh};
 use octogrid::oracle::{Agreement, forge, rays::hazards};
 use octogrid::{
-    BuildOptions, Hit, HybridParams, LoadError, MeshMismatch, Ray, RecursiveParams, Scene, Structure,
-    TriMesh, builtin,
+    Hit, HybridParams, LoadError, MeshMismatch, Ray, RecursiveParams, Scene, Structure, TriMesh, builtin,
 };
 
 /// Where the sections start.
@@ -18,7 +17,7 @@ const HEADER: usize = 192;
 
 fn build((vertices, triangles): &Mesh, structure: Structure) -> Scene {
     let mesh = TriMesh::new(vertices, triangles).unwrap();
-    Scene::build(&mesh, &BuildOptions { structure, ..Default::default() }).unwrap()
+    Scene::build(&mesh, &structure.into()).unwrap()
 }
 
 fn saved(scene: &Scene) -> Vec<u8> {
@@ -184,8 +183,10 @@ fn ask(scene: &Scene, rays: &[Ray]) {
 /// Bricks within bricks, as deep as walks can follow and deeper.
 #[test]
 fn structures_are_not_too_deep() {
-    let Structure::Hybrid(params) = Structure::HYBRID else { unreachable!("it is a hybrid") };
-    let file = saved(&build(&one_triangle(), Structure::Hybrid(HybridParams { levels: 8, ..params })));
+    let file = saved(&build(
+        &one_triangle(),
+        Structure::Hybrid(HybridParams { levels: 8, ..HybridParams::DEFAULT }),
+    ));
     let (start, boxes) = (HEADER + 320, file.len() - 256);
     let rays = hazards(&builtin::triangle().mesh().unwrap(), 1, 100);
     for levels in 1..12u32 {

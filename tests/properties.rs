@@ -6,7 +6,7 @@ use glam::Vec3;
 use octogrid::oracle::meshes::{closed_mesh, cuboid};
 use octogrid::oracle::rays::{RaySet, hazards};
 use octogrid::oracle::{Agreement, exact};
-use octogrid::{BuildOptions, Hit, Ray, Scene, Structure, TriMesh};
+use octogrid::{Hit, Ray, Scene, Structure, TriMesh};
 use proptest::array::{uniform3, uniform8};
 use proptest::collection::vec;
 use proptest::num;
@@ -124,8 +124,7 @@ fn assert_parity(vertices: &[[f32; 3]], triangles: &[[u32; 3]], seed: u64) {
         .flat_map(|set| set.rays(&mesh, seed, 10))
         .map(|ray| ray.with_interval(f32::NEG_INFINITY, f32::INFINITY))
         .collect();
-    let scenes = Structure::ALL
-        .map(|structure| Scene::build(&mesh, &BuildOptions { structure, ..Default::default() }).unwrap());
+    let scenes = Structure::ALL.map(|structure| Scene::build(&mesh, &structure.into()).unwrap());
     for ray in &rays {
         let even = exact::all(&mesh, ray).len();
         assert!(even.is_multiple_of(2), "{even} crossings in exact arithmetic: {ray:?}");

@@ -77,5 +77,8 @@ fn every_structure_instruction_set_and_number_of_threads() {
 fn scene((vertices, triangles): &Mesh, structure: Structure, isa: Isa) -> (Scene, Vec<Ray>) {
     let mesh = TriMesh::new(vertices, triangles).unwrap();
     let rays = SETS.iter().flat_map(|set| set.rays(&mesh, 1, 300)).collect();
-    (Scene::build(&mesh, &BuildOptions { structure, isa, ..Default::default() }).unwrap(), rays)
+    (
+        Scene::build(&mesh, &BuildOptions { structure: Some(structure), isa, ..Default::default() }).unwrap(),
+        rays,
+    )
 }

@@ -1,7 +1,6 @@
 //! The cases of all benches: scenes, structures and rays, with their answers checked.
 #![allow(dead_code, reason = "each bench uses its part")]
 
-use octogrid::descent::Walk;
 use octogrid::oracle::{Answer, brute};
 use octogrid::{BuildOptions, Hit, Model, Ray, Scene, Structure, builtin};
 
@@ -51,14 +50,13 @@ impl Case {
 
     /// The scene in one structure, after a check of its answers on some of the rays.
     pub(crate) fn scene(&self, structure: Structure) -> Scene {
-        self.scene_with(structure, Walk::Special)
+        self.scene_with(&structure.into())
     }
 
-    /// The same with a choice of the walk.
-    pub(crate) fn scene_with(&self, structure: Structure, walk: Walk) -> Scene {
+    /// The same with any options.
+    pub(crate) fn scene_with(&self, options: &BuildOptions) -> Scene {
         let mesh = self.model.mesh().expect("a sound mesh");
-        let scene =
-            Scene::build(&mesh, &BuildOptions { structure, walk, ..Default::default() }).expect("a scene");
+        let scene = Scene::build(&mesh, options).expect("a scene");
         let sample: Vec<Ray> =
             self.rays.iter().copied().step_by(self.rays.len().div_ceil(64).max(1)).collect();
         for (ray, answer) in sample.iter().zip(brute::answers(&mesh, &sample)) {

@@ -11,7 +11,7 @@ pub fn npy_trace(data: &[u8]) {
     rays.truncate(32);
     let model = builtin::cube();
     let mesh = model.mesh().unwrap();
-    Agreement { structures: vec![Structure::HYBRID], ..Agreement::quick() }.assert(&mesh, &rays);
+    Agreement { structures: vec![Structure::HYBRID.into()], ..Agreement::quick() }.assert(&mesh, &rays);
     let scene = Scene::build(&mesh, &Default::default()).unwrap();
     for mut answer in [Answer::closest(rays.len()), Answer::any(rays.len()), Answer::all()] {
         answer.ask(&scene, &rays);

@@ -2,7 +2,9 @@
 
 use arbitrary::Arbitrary;
 use octogrid::descent::Walk;
-use octogrid::{BuildOptions, HybridParams, Isa, OctreeParams, RecursiveParams, Structure, UniformParams};
+use octogrid::{
+    BuildOptions, Forced, HybridParams, Isa, OctreeParams, Part, RecursiveParams, Structure, UniformParams,
+};
 
 /// Any parameters of any structure.
 #[derive(Arbitrary, Clone, Debug)]
@@ -24,11 +26,27 @@ impl Options {
     /// The options of the library; the memory limit is below 1 MiB to keep an execution short.
     pub fn with(&self, isa: Isa) -> BuildOptions {
         BuildOptions {
-            structure: self.structure.into(),
+            // The bits below the memory limit.
+            structure: match self.memory_limit % 16 {
+                0 => None,
+                1 => Some(Structure::Brute),
+                _ => Some(self.structure.into()),
+            },
+            forced: self.forced(),
             memory_limit: self.memory_limit as usize >> 12,
             isa,
             walk: if self.general_walk { Walk::General } else { Walk::Special },
         }
+    }
+
+    fn forced(&self) -> Forced {
+        (2..).zip(Part::ALL).fold(Forced::default(), |forced, (i, part)| {
+            match self.memory_limit >> (2 * i) & 3 {
+                2 => forced.with(part, true),
+                3 => forced.with(part, false),
+                _ => forced,
+            }
+        })
     }
 }
 

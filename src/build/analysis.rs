@@ -1,7 +1,8 @@
-//! What the phases of the build need to know of a mesh: bounds, zero areas, planes, evenness.
+//! What the phases of the build need to know of a mesh: bounds, zero areas, planes, crowds.
 
 use glam::{DVec3, Vec3};
 
+use super::grid;
 use crate::aabb::Aabb;
 use crate::exact::{self, Difference};
 use crate::mesh::TriMesh;
@@ -32,23 +33,18 @@ impl Analysis {
         Self { triangles, boxes, bounds }
     }
 
-    /// The share of voxels that the triangles' centres occupy in a grid with about one voxel for every
-    /// eight triangles: near 1 where they are spread evenly, near 0 where they crowd in few places.
-    pub(crate) fn evenness(&self) -> f64 {
-        let grid = super::grid::cubic(&self.bounds, self.triangles.len() as f64 / 8.0);
-        let mut occupied = vec![false; grid.len()];
+    /// How many triangles have their centre in each voxel of a grid of about so many voxels.
+    pub(crate) fn occupants(&self, voxels: f64) -> Vec<u32> {
+        let grid = grid::cubic(&self.bounds, voxels);
         let strides = grid.strides();
-        for b in &self.boxes {
+        let voxel = |b: &Aabb| -> u32 {
             let center = b.center();
-            let at: u32 = (0..3)
-                .map(|axis| {
-                    let cell = (f64::from(center[axis]) - grid.lo[axis]) / grid.cell;
-                    (cell as u32).min(grid.dims[axis] - 1) * strides[axis]
-                })
-                .sum();
-            occupied[at as usize] = true;
-        }
-        occupied.iter().filter(|&&o| o).count() as f64 / occupied.len() as f64
+            let at = |axis: usize| ((f64::from(center[axis]) - grid.lo[axis]) * grid.axes.per_length) as u32;
+            (0..3).map(|axis| at(axis).min(grid.dims[axis] - 1) * strides[axis]).sum()
+        };
+        let mut occupants = vec![0; grid.len()];
+        parallel::map(&self.boxes, voxel).into_iter().for_each(|i| occupants[i as usize] += 1);
+        occupants
     }
 }
 

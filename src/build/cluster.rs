@@ -44,6 +44,12 @@ pub(crate) fn clusters(mesh: &TriMesh<'_>, analysis: &Analysis) -> Vec<Cluster> 
     parallel::map(&runs, |(run, _)| gather(mesh, analysis, run))
 }
 
+/// Gathers the triangles of the analysis into as few clusters as there can be, in the order of the mesh.
+pub(crate) fn in_order(mesh: &TriMesh<'_>, analysis: &Analysis) -> Vec<Cluster> {
+    let order: Vec<u32> = (0..analysis.triangles.len() as u32).collect();
+    order.chunks(WIDTH).map(|run| gather(mesh, analysis, run)).collect()
+}
+
 /// The parts of `order` up to each of the `ends`, with their ends.
 fn runs_mut<'a>(mut order: &'a mut [u32], mut ends: &'a mut [bool]) -> Vec<(&'a mut [u32], &'a mut [bool])> {
     let mut runs = Vec::new();

@@ -42,7 +42,8 @@ pub(crate) fn cube(bounds: &Aabb) -> Grid {
     centred(lo, extent, side, [1; 3])
 }
 
-fn corner_and_extent(bounds: &Aabb) -> ([f64; 3], [f64; 3]) {
+/// The lower corner and the extents in f64, in which they don't overflow; zeros where the box is empty.
+pub(super) fn corner_and_extent(bounds: &Aabb) -> ([f64; 3], [f64; 3]) {
     if bounds.lo.cmpgt(bounds.hi).any() {
         return ([0.0; 3], [0.0; 3]);
     }

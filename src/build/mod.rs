@@ -9,7 +9,9 @@ mod divide;
 mod grid;
 mod options;
 mod piece;
+mod plan;
 mod policy;
+mod profile;
 mod sah;
 mod split;
 mod voxel;
@@ -17,8 +19,11 @@ mod voxel;
 pub use options::{
     BuildError, BuildOptions, HybridParams, OctreeParams, RecursiveParams, Structure, UniformParams,
 };
+pub use plan::{Decision, Forced, Part, Plan};
+pub use profile::SceneProfile;
 
 use crate::arena::{Arena, BRICK_LEVELS, Form, LIST_LEVELS};
+use crate::cluster::Cluster;
 use crate::dda::{BRICK_MARGIN, LIST_MARGIN};
 use crate::lanes::dispatch;
 use crate::mesh::TriMesh;
@@ -27,32 +32,58 @@ use analysis::Analysis;
 use policy::Policy;
 
 /// Builds the structure that `options` asks for.
-pub(crate) fn build(mesh: &TriMesh<'_>, options: &BuildOptions) -> Result<Arena, BuildError> {
-    options.check()?;
+pub(crate) fn build(mesh: &TriMesh<'_>, options: &BuildOptions) -> Result<(Structure, Arena), BuildError> {
+    options.structure.as_ref().map_or(Ok(()), Structure::check)?;
     parallel::enter(|| build_in_pool(mesh, options))
 }
 
-fn build_in_pool(mesh: &TriMesh<'_>, options: &BuildOptions) -> Result<Arena, BuildError> {
+fn build_in_pool(mesh: &TriMesh<'_>, options: &BuildOptions) -> Result<(Structure, Arena), BuildError> {
     let analysis = Analysis::new(mesh);
-    let clusters = cluster::clusters(mesh, &analysis);
-    match &options.structure {
-        Structure::Uniform(p) => finish(&policy::Uniform::new(p, &analysis), clusters, &analysis, 0, options),
+    let structure = match options.structure {
+        Some(structure) => structure,
+        None => Plan::new(&SceneProfile::of(&analysis, mesh.len()), options.forced).structure(),
+    };
+    Ok((structure, structured(mesh, &analysis, &structure, options)?))
+}
+
+fn structured(
+    mesh: &TriMesh<'_>,
+    analysis: &Analysis,
+    structure: &Structure,
+    options: &BuildOptions,
+) -> Result<Arena, BuildError> {
+    let clusters = match structure {
+        Structure::Brute => cluster::in_order(mesh, analysis),
+        _ => cluster::clusters(mesh, analysis),
+    };
+    match structure {
+        Structure::Uniform(p) => finish(&policy::Uniform::new(p, analysis), clusters, analysis, 0, options),
         Structure::Recursive(p) => {
-            finish(&policy::Recursive::new(p, &analysis), clusters, &analysis, LIST_LEVELS, options)
+            finish(&policy::Recursive::new(p, analysis), clusters, analysis, LIST_LEVELS, options)
         }
         Structure::Octree(p) => {
-            finish(&policy::Octree::new(p, mesh, &analysis), clusters, &analysis, LIST_LEVELS, options)
+            finish(&policy::Octree::new(p, mesh, analysis), clusters, analysis, LIST_LEVELS, options)
         }
         Structure::Hybrid(p) => {
-            let policy = policy::Hybrid::new(p, &analysis, clusters.len());
-            finish(&policy, clusters, &analysis, p.levels, options)
+            let policy = policy::Hybrid::new(p, analysis, clusters.len());
+            finish(&policy, clusters, analysis, p.levels, options)
         }
+        Structure::Brute => brute(clusters, analysis, options),
     }
+}
+
+/// Clusters without voxels.
+fn brute(clusters: Vec<Cluster>, analysis: &Analysis, options: &BuildOptions) -> Result<Arena, BuildError> {
+    // Only the box around all of them counts, which few voxels fit well.
+    let grid = grid::cubic(&analysis.bounds, 64.0).fitted(&analysis.bounds);
+    let arena = Arena { clusters, ..Arena::new(grid, Form::BRUTE) };
+    let (limit, needed) = (options.memory_limit, arena.bytes());
+    if needed > limit { Err(BuildError::MemoryLimit { limit, needed }) } else { Ok(arena) }
 }
 
 fn finish<P: Policy>(
     policy: &P,
-    clusters: Vec<crate::cluster::Cluster>,
+    clusters: Vec<Cluster>,
     analysis: &Analysis,
     levels: u32,
     options: &BuildOptions,
@@ -70,5 +101,6 @@ fn finish<P: Policy>(
         least_side,
         levels: levels.min(most_levels),
     };
-    dispatch!(options.isa, lanes => split::build(lanes, policy, clusters, limits))
+    let arena = dispatch!(options.isa, lanes => split::build(lanes, policy, clusters, limits))?;
+    Ok(Arena { grid: arena.grid.fitted(&analysis.bounds), ..arena })
 }

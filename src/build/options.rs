@@ -3,6 +3,7 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
+use super::plan::Forced;
 use crate::arena::BRICK_LEVELS;
 use crate::descent::Walk;
 use crate::lanes::Isa;
@@ -56,6 +57,12 @@ pub struct HybridParams {
     pub voxel_cost: f32,
 }
 
+impl HybridParams {
+    /// What is fastest on the geometric mean of many scenes.
+    pub const DEFAULT: Self =
+        Self { density: 0.1, levels: 8, group_cost: 0.5, brick_cost: 12.0, voxel_cost: 2.0 };
+}
+
 /// A voxel structure with its parameters.
 ///
 /// ```
@@ -63,7 +70,7 @@ pub struct HybridParams {
 /// let r31_2 = Structure::Recursive(RecursiveParams { threshold: 31, divisions: 2, top_grid: true });
 /// assert_eq!(r31_2.to_string(), "R[31,2]");
 /// assert_eq!(Structure::OCTREE.to_string(), "O[4,15]");
-/// let options = BuildOptions { structure: r31_2, ..Default::default() };
+/// let options = BuildOptions { structure: Some(r31_2), ..Default::default() };
 /// # let _ = options;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,6 +83,8 @@ pub enum Structure {
     Octree(OctreeParams),
     /// A grid on top of 4x4x4 bricks, split by a cost model.
     Hybrid(HybridParams),
+    /// No voxels: every triangle for every ray, which is fastest for a handful of them.
+    Brute,
 }
 
 impl Structure {
@@ -87,23 +96,18 @@ impl Structure {
     /// O\[4,15\], the paper's optimum.
     pub const OCTREE: Structure = Structure::Octree(OctreeParams { threshold: 4, plane_weight: 15 });
     /// The hybrid with default parameters.
-    pub const HYBRID: Structure = Structure::Hybrid(HybridParams {
-        density: 0.1,
-        levels: 8,
-        group_cost: 0.5,
-        brick_cost: 12.0,
-        voxel_cost: 2.0,
-    });
-    /// All four with default parameters.
+    pub const HYBRID: Structure = Structure::Hybrid(HybridParams::DEFAULT);
+    /// All voxel structures with default parameters.
     pub const ALL: [Structure; 4] = [Self::UNIFORM, Self::RECURSIVE, Self::OCTREE, Self::HYBRID];
 
-    /// `uniform`, `recursive`, `octree` or `hybrid`.
+    /// `uniform`, `recursive`, `octree`, `hybrid` or `brute`.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Uniform(_) => "uniform",
             Self::Recursive(_) => "recursive",
             Self::Octree(_) => "octree",
             Self::Hybrid(_) => "hybrid",
+            Self::Brute => "brute",
         }
     }
 }
@@ -119,6 +123,7 @@ impl fmt::Display for Structure {
             }
             Self::Octree(p) => write!(f, "O[{},{}]", p.threshold, p.plane_weight),
             Self::Hybrid(p) => write!(f, "hybrid[{},{}]", p.density, p.levels),
+            Self::Brute => f.write_str("brute force"),
         }
     }
 }
@@ -126,53 +131,68 @@ impl fmt::Display for Structure {
 /// How to build a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildOptions {
-    /// The structure and its parameters.
-    pub structure: Structure,
+    /// The structure and its parameters; none is that of the scene's [`Plan`](crate::Plan).
+    pub structure: Option<Structure>,
+    /// Parts that are kept or left out whatever the plan says; of no effect where `structure` is given.
+    pub forced: Forced,
     /// The build fails rather than hold more than this many bytes for the finished structure.
     pub memory_limit: usize,
     /// The instruction set of the queries; answers do not depend on it.
     pub isa: Isa,
-    /// How an octree is walked; answers do not depend on it.
+    /// Whether walks leave out what the structure does not have; answers do not depend on it.
     pub walk: Walk,
 }
 
 impl Default for BuildOptions {
-    /// The hybrid, at most 16 GiB, the best instruction set of this processor.
+    /// What the scene's plan says, at most 16 GiB, the best instruction set of this processor.
     fn default() -> Self {
-        Self { structure: Structure::HYBRID, memory_limit: 16 << 30, isa: Isa::detect(), walk: Walk::Special }
+        Self {
+            structure: None,
+            forced: Forced::default(),
+            memory_limit: 16 << 30,
+            isa: Isa::detect(),
+            walk: Walk::Special,
+        }
     }
 }
 
-impl BuildOptions {
+impl From<Structure> for BuildOptions {
+    /// That structure, and what is default otherwise.
+    fn from(structure: Structure) -> Self {
+        Self { structure: Some(structure), ..Self::default() }
+    }
+}
+
+impl Structure {
     /// Checks the parameters.
     pub(crate) fn check(&self) -> Result<(), BuildError> {
         let above_zero = |name, value: f32| {
             let fine = value > 0.0 && value.is_finite();
-            Self::require(fine, name, f64::from(value), "finite and above 0")
+            require(fine, name, f64::from(value), "finite and above 0")
         };
-        match self.structure {
+        match *self {
             Structure::Uniform(p) => above_zero("density", p.density),
             Structure::Recursive(p) => {
                 let fine = RecursiveParams::DIVISIONS.contains(&p.divisions);
-                Self::require(fine, "divisions", f64::from(p.divisions), "from 2 to 8")
+                require(fine, "divisions", f64::from(p.divisions), "from 2 to 8")
             }
-            Structure::Octree(_) => Ok(()),
+            Structure::Octree(_) | Structure::Brute => Ok(()),
             Structure::Hybrid(p) => {
                 above_zero("density", p.density)?;
                 for (name, cost) in
                     [("group_cost", p.group_cost), ("brick_cost", p.brick_cost), ("voxel_cost", p.voxel_cost)]
                 {
                     let fine = cost >= 0.0 && cost.is_finite();
-                    Self::require(fine, name, f64::from(cost), "finite and at least 0")?;
+                    require(fine, name, f64::from(cost), "finite and at least 0")?;
                 }
-                Self::require(p.levels <= BRICK_LEVELS, "levels", f64::from(p.levels), "at most 8")
+                require(p.levels <= BRICK_LEVELS, "levels", f64::from(p.levels), "at most 8")
             }
         }
     }
+}
 
-    fn require(fine: bool, name: &'static str, value: f64, must_be: &'static str) -> Result<(), BuildError> {
-        if fine { Ok(()) } else { Err(BuildError::Parameter { name, value, must_be }) }
-    }
+fn require(fine: bool, name: &'static str, value: f64, must_be: &'static str) -> Result<(), BuildError> {
+    if fine { Ok(()) } else { Err(BuildError::Parameter { name, value, must_be }) }
 }
 
 /// Why a scene can't be built.

@@ -3,6 +3,7 @@
 use super::analysis::{Analysis, planes};
 use super::grid;
 use super::options::{HybridParams, OctreeParams, RecursiveParams, UniformParams};
+use super::profile::share_occupied;
 use super::voxel::{Item, VoxelView};
 use crate::arena::{Form, Grid};
 use crate::mesh::TriMesh;
@@ -70,7 +71,8 @@ impl Recursive {
     pub(crate) fn new(params: &RecursiveParams, analysis: &Analysis) -> Self {
         let grid = if params.top_grid {
             let even = analysis.triangles.len() as f64 / f64::from(params.threshold.max(1));
-            grid::cubic(&analysis.bounds, 4.0 * even * analysis.evenness())
+            let occupants = analysis.occupants(analysis.triangles.len() as f64 / 8.0);
+            grid::cubic(&analysis.bounds, 4.0 * even * share_occupied(&occupants))
         } else {
             grid::cube(&analysis.bounds)
         };

@@ -40,8 +40,7 @@ pub(crate) fn build<L: Lanes + Sync, P: Policy>(
     let parts = portions(&starts);
     let pieces: Result<Vec<Piece>, _> =
         parallel::map(&parts, |part| piece(&space, part.clone(), &items, &starts)).into_iter().collect();
-    let (words, references, bricks, groups) = Default::default();
-    let mut arena = Arena { grid, form: policy.form(), clusters, words, references, bricks, groups };
+    let mut arena = Arena { clusters, ..Arena::new(grid, policy.form()) };
     piece::join(&mut arena, pieces?)?;
     limits.check(arena.bytes())?;
     Ok(arena)

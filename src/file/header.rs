@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable, bytes_of};
 
 use crate::arena::{Arena, Form, Grid};
-use crate::build::{BuildOptions, HybridParams, OctreeParams, RecursiveParams, Structure, UniformParams};
+use crate::build::{HybridParams, OctreeParams, RecursiveParams, Structure, UniformParams};
 use crate::mesh::TriMesh;
 use crate::validate::Violation;
 
@@ -108,8 +108,7 @@ impl Header {
         let structure = decode(self.kind, &self.params)
             .filter(|structure| encode(structure) == (self.kind, self.params))
             .ok_or_else(|| Violation(format!("structure {} {:?} is unknown", self.kind, self.params)))?;
-        let options = BuildOptions { structure, ..Default::default() };
-        options.check().map_err(|error| Violation(error.to_string()))?;
+        structure.check().map_err(|error| Violation(error.to_string()))?;
         let zeros = self.padding == 0
             && self.grid.padding == 0
             && self.sections.iter().all(|section| section.padding == 0);
@@ -126,6 +125,7 @@ impl Header {
 /// How a structure is stored.
 pub(super) fn form(structure: &Structure) -> Form {
     match structure {
+        Structure::Brute => Form::BRUTE,
         Structure::Uniform(_) => Form::Lists { divisions: 1 },
         Structure::Recursive(p) => Form::Lists { divisions: p.divisions },
         Structure::Octree(_) => Form::Lists { divisions: 2 },
@@ -142,6 +142,7 @@ fn encode(structure: &Structure) -> (u32, [u32; 8]) {
             let [group, brick, voxel] = [p.group_cost, p.brick_cost, p.voxel_cost].map(f32::to_bits);
             (4, words([p.density.to_bits(), p.levels, group, brick, voxel]))
         }
+        Structure::Brute => (5, words([])),
     }
 }
 
@@ -166,6 +167,7 @@ fn decode(kind: u32, params: &[u32; 8]) -> Option<Structure> {
             brick_cost: number(3),
             voxel_cost: number(4),
         }),
+        5 => Structure::Brute,
         _ => return None,
     })
 }

@@ -43,7 +43,7 @@ impl Scene {
     /// |---|---|---|
     /// | 0..8 | `u8` | `89 6f 67 72 69 64 0d 0a`, which is `\x89ogrid\r\n` |
     /// | 8..12 | `u32` | the version of the format, 1 |
-    /// | 12..16 | `u32` | the structure: 1 uniform, 2 recursive, 3 octree, 4 hybrid |
+    /// | 12..16 | `u32` | the structure: 1 uniform, 2 recursive, 3 octree, 4 hybrid, 5 brute force |
     /// | 16..48 | `u32` or `f32` | its parameters in the order of their declaration, then zeros |
     /// | 48..56 | `u64` | the number of triangles of the mesh |
     /// | 56..104 | `f64`, `u32` | the top grid: lower corner (3), side of a voxel, voxels along each axis (3), zero |
@@ -72,7 +72,7 @@ impl Scene {
     pub fn save(&self, mut to: impl Write) -> io::Result<()> {
         require_little_endian()?;
         let sections = bytes_of_sections(&self.arena);
-        let header = Header::new(&self.options.structure, self.triangles, &self.arena, sections);
+        let header = Header::new(&self.structure, self.triangles, &self.arena, sections);
         to.write_all(bytes_of(&header))?;
         for section in sections {
             to.write_all(section)?;
@@ -117,7 +117,8 @@ impl Scene {
         };
         let triangles = header.triangles().map_err(LoadError::Invalid)?;
         validate(&arena, triangles).map_err(LoadError::Invalid)?;
-        Ok(Self { arena, options: BuildOptions { structure, ..Default::default() }, triangles })
+        let arena = Arena { grid: arena.grid.fitted(&arena.bounds()), ..arena };
+        Ok(Self::of(arena, structure, triangles, &BuildOptions::default()))
     }
 }
 

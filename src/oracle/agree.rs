@@ -3,7 +3,9 @@
 use super::compare::{self, Subject};
 use super::disagreement::Disagreement;
 use super::{brute, exact};
-use crate::build::{BuildOptions, HybridParams, OctreeParams, RecursiveParams, Structure, UniformParams};
+use crate::build::{
+    BuildOptions, Forced, HybridParams, OctreeParams, Part, RecursiveParams, Structure, UniformParams,
+};
 use crate::lanes::Isa;
 use crate::mesh::TriMesh;
 use crate::ray::Ray;
@@ -16,15 +18,16 @@ use crate::scene::Scene;
 /// use octogrid::{Structure, TriMesh};
 /// let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 /// let mesh = TriMesh::new(&vertices, &[[0, 1, 2]])?;
-/// let octree = Agreement { structures: vec![Structure::OCTREE], ..Agreement::quick() };
+/// let octree = Agreement { structures: vec![Structure::OCTREE.into()], ..Agreement::quick() };
 /// let report = octree.assert(&mesh, &rays::hazards(&mesh, 1, 100));
 /// assert_eq!((report.rays, report.structures), (100, 1));
 /// # Ok::<(), octogrid::MeshError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Agreement {
-    /// The structures to build, each for each instruction set.
-    pub structures: Vec<Structure>,
+    /// What to build, each for each instruction set in place of its own; brute force only of meshes of up to
+    /// 4096 triangles.
+    pub structures: Vec<BuildOptions>,
     /// The instruction sets to run the queries with.
     pub isas: Vec<Isa>,
     /// The number of threads of each pool in which batches run; without the feature `parallel` no
@@ -37,11 +40,12 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    /// The four structures with default parameters and a hybrid of many bricks, one thread, all rays
-    /// against exact arithmetic: for many small cases.
+    /// What the plan says, the four structures with default parameters, a hybrid of many bricks and brute force,
+    /// one thread, all rays against exact arithmetic: for many small cases.
     pub fn quick() -> Self {
+        let structures = Structure::ALL.into_iter().chain([bricks(8), Structure::Brute]);
         Self {
-            structures: Structure::ALL.into_iter().chain([bricks(8)]).collect(),
+            structures: structures.map(BuildOptions::from).chain([BuildOptions::default()]).collect(),
             isas: vec![Isa::detect()],
             threads: vec![1],
             exact: usize::MAX,
@@ -49,10 +53,11 @@ impl Agreement {
         }
     }
 
-    /// Every structure with default and with extreme parameters, every instruction set, one and two
-    /// threads, all rays against exact arithmetic, some of them decorated.
+    /// Every structure with default and with extreme parameters, plans with every part forced on and off, every
+    /// instruction set, one and two threads, all rays against exact arithmetic, some of them decorated.
     pub fn thorough() -> Self {
-        let structures = Structure::ALL.into_iter().chain(variants()).collect();
+        let structures = Structure::ALL.into_iter().chain(variants()).map(BuildOptions::from);
+        let structures = structures.chain(plans()).collect();
         Self { structures, threads: vec![1, 2], isas: Isa::available(), decorated: 50, ..Self::quick() }
     }
 
@@ -83,8 +88,12 @@ impl Agreement {
     pub fn build<'a>(&self, mesh: &TriMesh<'a>) -> Result<Subjects<'a>, Box<Disagreement>> {
         let mut subjects = Vec::new();
         for &isa in &self.isas {
-            for &structure in &self.structures {
-                subjects.push(Subject::new(build(mesh, structure, isa)?, mesh, isa)?);
+            for options in &self.structures {
+                let scene = build(mesh, &BuildOptions { isa, ..*options })?;
+                // Of large meshes that would compare brute force with itself for long.
+                if scene.structure() != Structure::Brute || mesh.len() <= 4096 {
+                    subjects.push(Subject::new(scene, mesh, isa)?);
+                }
             }
         }
         Ok(Subjects { agreement: self.clone(), mesh: *mesh, subjects })
@@ -187,11 +196,23 @@ fn sample(len: usize, n: usize) -> impl Iterator<Item = usize> {
     (0..end).step_by(len.div_ceil(n.max(1)).max(1))
 }
 
-fn build(mesh: &TriMesh<'_>, structure: Structure, isa: Isa) -> Result<Scene, Box<Disagreement>> {
-    let options = BuildOptions { structure, isa, ..Default::default() };
-    Scene::build(mesh, &options).map_err(|error| {
-        Disagreement::new(format!("{structure}, {isa}"), "build", &"a scene", &error.to_string())
+fn build(mesh: &TriMesh<'_>, options: &BuildOptions) -> Result<Scene, Box<Disagreement>> {
+    let name = || options.structure.map_or("auto".to_owned(), |structure| structure.to_string());
+    Scene::build(mesh, options).map_err(|error| {
+        Disagreement::new(format!("{}, {}", name(), options.isa), "build", &"a scene", &error.to_string())
     })
+}
+
+/// Plans with each part forced on and off.
+fn plans() -> impl Iterator<Item = BuildOptions> {
+    let forced = |keep: [Option<bool>; 3]| {
+        let parts = Part::ALL.into_iter().zip(keep).filter_map(|(part, keep)| Some((part, keep?)));
+        parts.fold(Forced::default(), |forced, (part, keep)| forced.with(part, keep))
+    };
+    let (on, off) = (Some(true), Some(false));
+    [[None; 3], [on, on, on], [on, off, off], [off, None, None]]
+        .into_iter()
+        .map(move |keep| BuildOptions { forced: forced(keep), ..Default::default() })
 }
 
 /// Parameters away from the defaults: the paper's, no top grid, no depth, much depth.
@@ -201,10 +222,7 @@ fn variants() -> Vec<Structure> {
     };
     let octree = |threshold, plane_weight| Structure::Octree(OctreeParams { threshold, plane_weight });
     let uniform = |density| Structure::Uniform(UniformParams { density });
-    let hybrid = |density| {
-        let Structure::Hybrid(params) = Structure::HYBRID else { unreachable!("it is a hybrid") };
-        Structure::Hybrid(HybridParams { density, ..params })
-    };
+    let hybrid = |density| Structure::Hybrid(HybridParams { density, ..HybridParams::DEFAULT });
     vec![
         recursive(3, 2, true),
         recursive(19, 2, false),

@@ -66,7 +66,7 @@ impl<'a> Subject<'a> {
         self.scene.save(&mut file)?;
         let mut scene = Scene::load(&file[..])?;
         // What it is queried with is not of the file.
-        scene.options = self.scene.options;
+        (scene.isa, scene.walk) = (self.scene.isa, self.scene.walk);
         Ok(Self { scene, name: format!("{}, loaded", self.name), ..self })
     }
 

@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::lattice::Lattice;
 use crate::aabb::Aabb;
 use crate::arena::{Arena, Form, Voxel, VoxelWord};
-use crate::build::{self, BuildOptions, Structure};
+use crate::build::{self, Structure};
 use crate::dda::{BRICK_MARGIN, LIST_MARGIN};
 use crate::lanes::WIDTH;
 use crate::mesh::TriMesh;
@@ -45,13 +45,12 @@ pub(super) struct Subject {
 
 impl Subject {
     pub(super) fn new(mesh: &TriMesh<'_>, structure: Structure) -> Self {
-        let arena = build::build(mesh, &BuildOptions { structure, ..Default::default() }).unwrap();
+        let (_, arena) = build::build(mesh, &structure.into()).unwrap();
         let depth = validate(&arena, mesh.len()).unwrap().depth as u32;
         let parts = u64::from(arena.form.divisions()).pow(depth);
         let margin = if arena.form == Form::Bricks { BRICK_MARGIN } else { LIST_MARGIN };
         let margin = margin * arena.grid.cell * f64::from(arena.grid.longest());
-        let clusters = arena.clusters.iter();
-        let bounds = clusters.fold(Aabb::EMPTY, |all, c| all.union(c.bounds(c.occupied())));
+        let bounds = arena.bounds();
         let mut subject = Self { arena, parts, leaves: Vec::new(), margin, bounds };
         let dims = subject.arena.grid.dims.map(|n| n as usize);
         for i in 0..subject.arena.grid.len() {

@@ -14,7 +14,7 @@ use super::disagreement::Disagreement;
 use super::exact;
 use super::meshes::Mesh;
 use super::source::{Source, narrow, towards};
-use crate::build::{BuildError, BuildOptions, Structure};
+use crate::build::{BuildError, Structure};
 use crate::hit::Hit;
 use crate::mesh::TriMesh;
 use crate::ray::Ray;
@@ -65,7 +65,7 @@ impl<'a> Watertight<'a> {
     /// Where the mesh is not closed: see [`closed_part`].
     pub fn new(mesh: TriMesh<'a>, structures: &[Structure]) -> Result<Self, BuildError> {
         assert!(odd_edges(mesh.triangles()).is_empty(), "the mesh is not closed");
-        let build = |&structure| Scene::build(&mesh, &BuildOptions { structure, ..Default::default() });
+        let build = |&structure: &Structure| Scene::build(&mesh, &structure.into());
         Ok(Self { mesh, scenes: structures.iter().map(build).collect::<Result<_, _>>()? })
     }
 
@@ -185,7 +185,7 @@ mod tests {
         let (vertices, triangles) = cuboid(Vec3::ZERO, Vec3::ONE);
         let mesh = TriMesh::new(&vertices, &triangles).unwrap();
         let holed = TriMesh::new(&vertices, &triangles[1..]).unwrap();
-        let scenes = vec![Scene::build(&holed, &BuildOptions::default()).unwrap()];
+        let scenes = vec![Scene::build(&holed, &Default::default()).unwrap()];
         let leaks = Watertight { mesh, scenes }.check(1, 8000);
         assert!(leaks.inside > 4000 && leaks.outside > 500, "{leaks:?}");
         assert!(leaks.escapes > 10 && leaks.miscounts > leaks.escapes, "{leaks:?}");

@@ -145,7 +145,7 @@ impl<A: Answers> Stream<'_, A> {
 
     /// Adds rays to the groups that are open; whether that paid.
     fn gather(&mut self, at: usize, end: usize) -> bool {
-        dispatch!(self.scene.options.isa, lanes => {
+        dispatch!(self.scene.isa, lanes => {
             let mut opened = 0;
             self.refused = 0;
             for i in at..end {
@@ -192,7 +192,7 @@ impl<A: Answers> Stream<'_, A> {
 /// Traces rays together; false where they don't go alike, and nothing is answered.
 fn trace<A: Answers>(scene: &Scene, group: &mut Group, len: usize, ray: impl Fn(usize) -> Ray) -> bool {
     group.load(len, ray);
-    let (isa, arena) = (scene.options.isa, &scene.arena);
+    let (isa, arena) = (scene.isa, &scene.arena);
     if A::ANY {
         traverse::group::<true>(isa, arena, group)
     } else {

@@ -19,10 +19,10 @@ use crate::dda::{Clock, Dda, Limit, Path};
 use crate::filter::above;
 use crate::lanes::{Lanes, Vec3Lanes, axes};
 
-/// The walk.
-pub(crate) struct Hybrid;
+/// The walk, with bricks or through the top grid alone.
+pub(crate) struct Hybrid<const BRICKS: bool>;
 
-impl Walker for Hybrid {
+impl<const BRICKS: bool> Walker for Hybrid<BRICKS> {
     #[inline(always)]
     fn walk<L: Lanes, V: Visit>(lanes: L, arena: &Arena, path: &Path<L>, visit: &mut V) -> ControlFlow<()> {
         let (mut dda, steps) = Dda::new(lanes, path, &arena.grid);
@@ -44,15 +44,15 @@ impl Walker for Hybrid {
                 }
             };
             match word.get() {
-                Voxel::Empty => {}
                 Voxel::Leaf(first) => cells.groups(first)?,
-                Voxel::Node(brick) => {
+                Voxel::Node(brick) if BRICKS => {
                     let enter = axes(|axis| (dda.exit[axis] - steps.width[axis]) as f32);
                     cells.descend(
                         brick,
                         BrickPath::new(enter, axes(|axis| 0.25 * steps.width[axis] as f32)),
                     )?;
                 }
+                Voxel::Empty | Voxel::Node(_) => {}
             }
             if !dda.advance(cells.limit.time, &steps) {
                 return ControlFlow::Continue(());
@@ -178,7 +178,7 @@ impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
             while met != 0 {
                 let lane = met.trailing_zeros() as usize;
                 met &= met - 1;
-                self.visit.cluster(group.clusters[lane].cluster())?;
+                self.visit.only(group.clusters[lane].cluster())?;
                 if self.limit.update(self.clock, self.visit.t_max()) {
                     self.last = last(self.limit);
                     met &= self.overlapping(start, self.lanes.splat(self.last));

@@ -70,9 +70,11 @@ impl<L: Lanes, K: Test, Q: Query> Visit for LeafTest<'_, L, K, Q> {
     /// Tests one cluster, unless that was done just now.
     #[inline(always)]
     fn cluster(&mut self, index: u32) -> ControlFlow<()> {
-        if !self.mailbox.is_new(index) {
-            return ControlFlow::Continue(());
-        }
+        if self.mailbox.is_new(index) { self.only(index) } else { ControlFlow::Continue(()) }
+    }
+
+    #[inline(always)]
+    fn only(&mut self, index: u32) -> ControlFlow<()> {
         let cluster = &self.arena.clusters[index as usize];
         self.query.on_cluster();
         self.query.on_read(cluster);

@@ -4,6 +4,7 @@
 //! they find ([`leaf`]), and a [`crate::Query`] keeps hits. Each structure has one walk for all of it.
 
 mod brick;
+mod brute;
 mod coherent;
 mod frustum;
 mod group;
@@ -22,6 +23,7 @@ use crate::kernel::Test;
 use crate::lanes::{Isa, Lanes, dispatch};
 use crate::query::Query;
 use crate::ray::Ray;
+use brute::Brute;
 use coherent::Coherent;
 pub(crate) use group::{FEWEST, GROUP, Group};
 use hybrid::Hybrid;
@@ -40,6 +42,12 @@ pub(crate) trait Visit {
 
     /// The voxel holds a cluster. `Break` ends the walk.
     fn cluster(&mut self, index: u32) -> ControlFlow<()>;
+
+    /// The same for a cluster that comes only once.
+    #[inline(always)]
+    fn only(&mut self, index: u32) -> ControlFlow<()> {
+        self.cluster(index)
+    }
 
     /// No hit beyond this t is of use (closed end). May only fall.
     fn t_max(&self) -> f32;
@@ -69,8 +77,10 @@ pub(crate) trait Walker {
 macro_rules! dispatch_walk {
     ($arena:expr, $walk:expr, $walker:ident => $body:expr) => {
         dispatch_walk!(@ $arena, $walk, $walker, $body,
-            (Form::Bricks, _) => Hybrid,
+            (Form::Bricks, Walk::Special) if $arena.bricks.is_empty() => Hybrid<false>,
+            (Form::Bricks, _) => Hybrid<true>,
             (Form::Lists { divisions: 2 }, Walk::Special) => Octree,
+            (Form::BRUTE, _) if $arena.is_brute() => Brute,
             (Form::Lists { divisions: 1 }, _) => Uniform,
             (Form::Lists { divisions: 2 }, Walk::General) => Recursive<2>,
             (Form::Lists { divisions: 3 }, _) => Recursive<3>,
@@ -81,9 +91,9 @@ macro_rules! dispatch_walk {
             (Form::Lists { divisions: 8 }, _) => Recursive<8>
         )
     };
-    (@ $arena:expr, $walk:expr, $walker:ident, $body:expr, $($form:pat => $type:ty),*) => {
+    (@ $arena:expr, $walk:expr, $walker:ident, $body:expr, $($form:pat $(if $guard:expr)? => $type:ty),*) => {
         match ($arena.form, $walk) {
-            $($form => { type $walker = $type; $body })*
+            $($form $(if $guard)? => { type $walker = $type; $body })*
             (Form::Lists { divisions }, _) => unreachable!("built with {divisions} divisions"),
         }
     };
@@ -119,7 +129,7 @@ fn along<W: Walker, L: Lanes, V: Visit>(lanes: L, arena: &Arena, ray: &Ray, visi
 #[cold]
 #[inline(never)]
 fn every_cluster<V: Visit>(arena: &Arena, visit: &mut V) {
-    let _ = (0..arena.clusters.len() as u32).try_for_each(|index| visit.cluster(index));
+    let _ = (0..arena.clusters.len() as u32).try_for_each(|index| visit.only(index));
 }
 
 /// Traces the rays of a group together; false where they don't go alike, and its hits mean nothing.

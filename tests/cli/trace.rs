@@ -130,7 +130,7 @@ fn json_has_every_field() {
     assert_eq!(keys, expected);
     assert_eq!(json["scene"], "quads.obj");
     assert_eq!(json["query"], "all");
-    assert_eq!(json["structure"], "hybrid");
+    assert_eq!(json["structure"], "brute");
     for (key, number) in [("triangles", 4), ("rays", 6), ("hits", 4), ("threads", 2)] {
         assert_eq!(json[key], number, "{key}");
     }

@@ -33,13 +33,13 @@ impl Contender {
 pub(crate) fn all() -> Vec<Contender> {
     let with = |name, tracer, usual| Contender { name, tracer, usual };
     vec![
-        with("octogrid", octogrid(Structure::HYBRID, Calls::Single), true),
-        with("octogrid-batch", octogrid(Structure::HYBRID, Calls::Batch), true),
-        with("octogrid-packet16", octogrid(Structure::HYBRID, Calls::Packets16), true),
-        with("octogrid-stream", octogrid(Structure::HYBRID, Calls::Stream), true),
-        with("octogrid-octree", octogrid(Structure::OCTREE, Calls::Single), true),
-        with("octogrid-uniform", octogrid(Structure::UNIFORM, Calls::Single), false),
-        with("octogrid-recursive", octogrid(Structure::RECURSIVE, Calls::Single), false),
+        with("octogrid", octogrid(None, Calls::Single), true),
+        with("octogrid-batch", octogrid(None, Calls::Batch), true),
+        with("octogrid-packet16", octogrid(None, Calls::Packets16), true),
+        with("octogrid-stream", octogrid(None, Calls::Stream), true),
+        with("octogrid-octree", octogrid(Some(Structure::OCTREE), Calls::Single), true),
+        with("octogrid-uniform", octogrid(Some(Structure::UNIFORM), Calls::Single), false),
+        with("octogrid-recursive", octogrid(Some(Structure::RECURSIVE), Calls::Single), false),
         with("embree-low", embree(Quality::Low, false, embree::Calls::Single), true),
         with("embree-med", embree(Quality::Medium, false, embree::Calls::Single), true),
         with("embree-high", embree(Quality::High, false, embree::Calls::Single), true),
@@ -62,7 +62,8 @@ pub(crate) fn all() -> Vec<Contender> {
     ]
 }
 
-fn octogrid(structure: Structure, calls: Calls) -> Box<dyn Tracer> {
+/// Of the structure, or of that of the plan.
+fn octogrid(structure: Option<Structure>, calls: Calls) -> Box<dyn Tracer> {
     Box::new(Octogrid { options: BuildOptions { structure, ..Default::default() }, calls })
 }
 

@@ -1,6 +1,6 @@
-//! `octogrid analyze`: what a scene is made of, and the structures side by side.
+//! `octogrid analyze`: what a scene is made of, what of a structure it needs, and the structures side by side.
 
-use octogrid::{BuildOptions, Model, Statistics};
+use octogrid::{BuildOptions, Forced, Model, Part, Plan, SceneProfile, Statistics};
 
 use crate::args::{BuildArgs, Choice};
 use crate::failure::Failure;
@@ -8,12 +8,12 @@ use crate::load::{self, Loaded};
 use crate::output::say;
 use crate::{survey, table};
 
-/// Measure a scene and compare the structures on it
+/// Measure a scene, plan what it needs, and compare the structures on it
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// An OBJ file or the name of a built-in scene
     scene: String,
-    /// Build only this structure [default: all four]
+    /// Build only this structure [default: the plan's and the four of voxels]
     #[arg(long, value_enum)]
     structure: Option<Choice>,
     #[command(flatten)]
@@ -31,7 +31,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     };
     let loaded = load::load(&args.scene)?;
     let measured: Vec<_> = options.iter().map(|options| measure(&loaded.model, options)).collect();
-    let text = format!("{}\n{}", table::pairs(geometry(&loaded)), structures(&options, &measured));
+    let profile = SceneProfile::new(&loaded.model.mesh()?);
+    let plan = plan(&loaded.model, &profile, &options[0])?;
+    let facts = table::pairs(geometry(&loaded).into_iter().chain(lie(&profile)));
+    let text = format!("{facts}\n\n{plan}\n\n{}", structures(&options, &measured));
     // One structure over the limit says nothing of the others, but is the answer where it is alone.
     let failure = measured.into_iter().filter_map(Result::err).next_back();
     match failure {
@@ -47,10 +50,39 @@ fn measure(model: &Model, options: &BuildOptions) -> Result<(f64, f64, Statistic
     Ok((build_ms, load::bytes_per_triangle(&scene), statistics))
 }
 
+/// The plan, and what it saves.
+fn plan(model: &Model, profile: &SceneProfile, options: &BuildOptions) -> Result<String, Failure> {
+    let forced = options.forced;
+    let plan = Plan::new(profile, forced);
+    let all = Part::ALL.into_iter().fold(Forced::default(), |forced, part| forced.with(part, true));
+    let built = |forced| -> Result<String, Failure> {
+        let (scene, ms) = load::build(model, &BuildOptions { structure: None, forced, ..*options })?;
+        Ok(format!("{:.1} bytes a triangle, built in {ms:.2} ms", load::bytes_per_triangle(&scene)))
+    };
+    Ok(format!(
+        "Plan: {}\n{plan}\nThat is {}; with all parts {}.",
+        plan.structure(),
+        built(forced)?,
+        built(all)?
+    ))
+}
+
+/// How the triangles lie, as far as the plan depends on it.
+fn lie(profile: &SceneProfile) -> Vec<(&'static str, String)> {
+    vec![
+        ("least over greatest extent", format!("{:.3}", profile.flatness)),
+        ("largest coordinate over extent", format!("{:.3e}", profile.magnitude)),
+        ("triangles around an average one", format!("{:.0}", profile.crowding)),
+        ("voxels with triangles, of one for 80", format!("{:.1}%", 100.0 * profile.evenness)),
+    ]
+}
+
 fn geometry(loaded: &Loaded) -> Vec<(&'static str, String)> {
     let model = &loaded.model;
     let triangles = model.triangles.len();
     let (groups, grouped) = survey::coplanar(model);
+    let percent = |part: usize| format!("{:.1}%", 100.0 * part as f64 / triangles.max(1) as f64);
+    let [one, two, more] = survey::edges(model);
     let (low, high) = survey::bounds(model).unwrap_or_default();
     let point = |p: glam::DVec3| format!("{} {} {}", p.x as f32, p.y as f32, p.z as f32);
     let edges = survey::longest_edges(model);
@@ -69,7 +101,9 @@ fn geometry(loaded: &Loaded) -> Vec<(&'static str, String)> {
         ("zero-area triangles", survey::degenerate(model).to_string()),
         ("repeated triangles", survey::repeated(model).to_string()),
         ("planes with several triangles", groups.to_string()),
-        ("triangles in them", format!("{:.1}%", 100.0 * grouped as f64 / triangles.max(1) as f64)),
+        ("triangles in them", percent(grouped)),
+        ("triangles in a plane of two axes", percent(survey::axis_aligned(model))),
+        ("edges of one, two, more triangles", format!("{one} {two} {more}")),
         ("longest edge, quantiles 0 10 50 90 100%", quantiles.join(" ")),
         ("longest edge, largest / smallest", format!("{:.3e}", quantile(1.0) / shortest)),
     ]
@@ -92,7 +126,7 @@ fn structures(options: &[BuildOptions], measured: &[Result<(f64, f64, Statistics
     let mut failures = String::new();
     let mut rows = Vec::new();
     for (options, measured) in options.iter().zip(measured) {
-        let name = options.structure.to_string();
+        let name = options.structure.map_or("auto".to_owned(), |structure| structure.to_string());
         match measured {
             Ok((build_ms, bytes, parts)) => rows.push(row(name, *build_ms, *bytes, parts)),
             Err(Failure::Usage(what) | Failure::Expected(what)) => {

@@ -1,7 +1,7 @@
 //! Arguments that several commands share.
 
 use clap::ValueEnum;
-use octogrid::{BuildOptions, Structure};
+use octogrid::{BuildOptions, Forced, Part, Structure};
 
 use crate::failure::Failure;
 use crate::params::{self, Param};
@@ -9,7 +9,7 @@ use crate::params::{self, Param};
 /// The values of `--structure`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Choice {
-    /// The best structure for the scene
+    /// The hybrid without the parts that the scene does not need
     Auto,
     /// One regular grid
     Uniform,
@@ -19,16 +19,20 @@ pub(crate) enum Choice {
     Octree,
     /// A grid on top of 4x4x4 bricks
     Hybrid,
+    /// No voxels: every triangle for every ray
+    Brute,
 }
 
 impl Choice {
-    /// The structure with default parameters.
-    fn structure(self) -> Structure {
+    /// The structure with default parameters; none where the plan chooses it.
+    fn structure(self) -> Option<Structure> {
         match self {
-            Self::Uniform => Structure::UNIFORM,
-            Self::Recursive => Structure::RECURSIVE,
-            Self::Octree => Structure::OCTREE,
-            Self::Auto | Self::Hybrid => Structure::HYBRID,
+            Self::Auto => None,
+            Self::Uniform => Some(Structure::UNIFORM),
+            Self::Recursive => Some(Structure::RECURSIVE),
+            Self::Octree => Some(Structure::OCTREE),
+            Self::Hybrid => Some(Structure::HYBRID),
+            Self::Brute => Some(Structure::Brute),
         }
     }
 }
@@ -39,6 +43,9 @@ pub(crate) struct BuildArgs {
     /// Parameters of the structure, such as threshold=31,divisions=2
     #[arg(long, value_name = "KEY=VALUE", value_delimiter = ',')]
     params: Vec<Param>,
+    /// Parts to keep or to leave out whatever the plan says, such as bricks=off,fine-grid=on
+    #[arg(long, value_name = "PART=on|off", value_delimiter = ',', value_parser = parse_force)]
+    force: Vec<(Part, bool)>,
     /// The most bytes that the structure may hold; K, M and G multiply by 1024
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     memory_limit: Option<usize>,
@@ -47,7 +54,7 @@ pub(crate) struct BuildArgs {
 impl BuildArgs {
     /// Whether nothing is asked for.
     pub(crate) fn is_empty(&self) -> bool {
-        self.params.is_empty() && self.memory_limit.is_none()
+        self.params.is_empty() && self.force.is_empty() && self.memory_limit.is_none()
     }
 
     /// The options of the library.
@@ -55,25 +62,56 @@ impl BuildArgs {
     /// # Errors
     /// On a parameter that the structure does not have.
     pub(crate) fn options(&self, choice: Choice) -> Result<BuildOptions, Failure> {
-        if choice == Choice::Auto && !self.params.is_empty() {
-            return Err(Failure::Usage("--params needs --structure with a structure other than auto".into()));
-        }
-        let structure = params::apply(choice.structure(), &self.params).map_err(Failure::Usage)?;
+        let structure = match choice.structure() {
+            None if !self.params.is_empty() => {
+                return Err(Failure::Usage(
+                    "--params needs --structure with a structure other than auto".into(),
+                ));
+            }
+            Some(_) if !self.force.is_empty() => {
+                return Err(Failure::Usage(
+                    "--force needs the structure auto, as others are built as they are".into(),
+                ));
+            }
+            None => None,
+            Some(structure) => Some(params::apply(structure, &self.params).map_err(Failure::Usage)?),
+        };
         let default = BuildOptions::default();
         Ok(BuildOptions {
             structure,
+            forced: self.forced(),
             memory_limit: self.memory_limit.unwrap_or(default.memory_limit),
             ..default
         })
     }
 
-    /// Options for each of the four structures with default parameters.
+    /// The parts that are forced.
+    pub(crate) fn forced(&self) -> Forced {
+        self.force.iter().fold(Forced::default(), |forced, &(part, keep)| forced.with(part, keep))
+    }
+
+    /// Options for the plan's structure and each of the four voxel structures with default parameters.
     ///
     /// # Errors
     /// Where there are parameters, since no structure is chosen to have them.
     pub(crate) fn options_of_all(&self) -> Result<Vec<BuildOptions>, Failure> {
         let default = self.options(Choice::Auto)?;
-        Ok(Structure::ALL.map(|structure| BuildOptions { structure, ..default }).into())
+        let structures = std::iter::once(None).chain(Structure::ALL.map(Some));
+        Ok(structures.map(|structure| BuildOptions { structure, ..default }).collect())
+    }
+}
+
+/// A part and whether it is kept.
+fn parse_force(text: &str) -> Result<(Part, bool), String> {
+    let names = || Part::ALL.map(Part::name).join(", ");
+    let (name, keep) =
+        text.split_once('=').ok_or_else(|| format!("not of the form PART=on: parts are {}", names()))?;
+    let part = Part::ALL.into_iter().find(|part| part.name() == name);
+    let part = part.ok_or_else(|| format!("no part '{name}': there are {}", names()))?;
+    match keep {
+        "on" => Ok((part, true)),
+        "off" => Ok((part, false)),
+        _ => Err(format!("'{keep}' must be on or off")),
     }
 }
 
@@ -94,6 +132,21 @@ fn parse_size(text: &str) -> Result<usize, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn parts_are_forced_by_name() {
+        assert_eq!(parse_force("fine-grid=off"), Ok((Part::FineGrid, false)));
+        assert_eq!(parse_force("bricks=on"), Ok((Part::Bricks, true)));
+        assert_eq!(
+            parse_force("bricks"),
+            Err("not of the form PART=on: parts are voxels, fine-grid, bricks".into())
+        );
+        assert_eq!(
+            parse_force("boxes=on"),
+            Err("no part 'boxes': there are voxels, fine-grid, bricks".into())
+        );
+        assert_eq!(parse_force("bricks=1"), Err("'1' must be on or off".into()));
+    }
 
     #[test]
     fn sizes_have_suffixes() {

@@ -68,6 +68,7 @@ fn fields(structure: &mut Structure) -> Vec<(&'static str, Field<'_>)> {
             ("brick_cost", Number(&mut p.brick_cost)),
             ("voxel_cost", Number(&mut p.voxel_cost)),
         ],
+        Structure::Brute => vec![],
     }
 }
 
@@ -81,7 +82,8 @@ pub(crate) fn apply(mut structure: Structure, params: &[Param]) -> Result<Struct
         let mut fields = fields(&mut structure);
         let keys = fields.iter().map(|f| f.0).collect::<Vec<_>>().join(", ");
         let Some(at) = fields.iter().position(|f| f.0 == key) else {
-            return Err(format!("no parameter '{key}': those of {name} are {keys}"));
+            let known = if keys.is_empty() { "has none".to_owned() } else { format!("has {keys}") };
+            return Err(format!("no parameter '{key}': {name} {known}"));
         };
         let set = fields.swap_remove(at).1.set(value);
         set.map_err(|must_be| format!("the parameter {key} is '{value}', but must be {must_be}"))?;
@@ -108,7 +110,7 @@ mod tests {
     #[test]
     fn unknown_keys_list_the_known_ones() {
         let error = applied(Structure::OCTREE, &["levels=2"]).unwrap_err();
-        assert_eq!(error, "no parameter 'levels': those of octree are threshold, plane_weight");
+        assert_eq!(error, "no parameter 'levels': octree has threshold, plane_weight");
         assert!(applied(Structure::OCTREE, &["threshold=-1"]).unwrap_err().ends_with("a whole number"));
         assert!(applied(Structure::UNIFORM, &["density=NaN"]).unwrap_err().ends_with("a number"));
     }

@@ -38,7 +38,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     build: BuildArgs,
     /// The structure of the scene from octogrid build, in place of building it
-    #[arg(long, value_name = "FILE.ogrid", conflicts_with_all = ["structure", "params", "memory_limit"])]
+    #[arg(long, value_name = "FILE.ogrid", conflicts_with_all = ["structure", "params", "force", "memory_limit"])]
     accel: Option<PathBuf>,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse_size)]

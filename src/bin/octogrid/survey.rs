@@ -57,6 +57,29 @@ pub(crate) fn coplanar(model: &Model) -> (usize, usize) {
     (groups.clone().count(), groups.sum())
 }
 
+/// Triangles on which one coordinate is constant.
+pub(crate) fn axis_aligned(model: &Model) -> usize {
+    all_corners(model).filter(|[a, b, c]| (0..3).any(|axis| a[axis] == b[axis] && b[axis] == c[axis])).count()
+}
+
+/// The edges of one triangle, of two, and of more: only the second kind where a mesh is closed. Corners in the
+/// same place are one.
+pub(crate) fn edges(model: &Model) -> [usize; 3] {
+    let mut triangles: HashMap<[[u64; 3]; 2], usize> = HashMap::new();
+    // Adding 0 makes one zero of the two.
+    let bits = |p: DVec3| p.to_array().map(|x| (x + 0.0).to_bits());
+    for [a, b, c] in all_corners(model) {
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            let mut edge = [bits(from), bits(to)];
+            edge.sort_unstable();
+            *triangles.entry(edge).or_default() += 1;
+        }
+    }
+    let mut edges = [0; 3];
+    triangles.values().for_each(|&n| edges[n.min(3) - 1] += 1);
+    edges
+}
+
 /// The longest edge of each triangle, sorted.
 pub(crate) fn longest_edges(model: &Model) -> Vec<f64> {
     let longest = |[a, b, c]: [DVec3; 3]| a.distance(b).max(b.distance(c)).max(c.distance(a));
@@ -77,6 +100,9 @@ mod tests {
         assert_eq!(bounds(&model), Some((DVec3::ZERO, DVec3::new(3.0, 4.0, 1.0))));
         assert_eq!((degenerate(&model), repeated(&model)), (1, 1));
         assert_eq!(coplanar(&model), (1, 3));
+        assert_eq!(axis_aligned(&model), 5);
+        // The last triangle has an edge from a corner to itself, and another one twice.
+        assert_eq!(edges(&model), [4, 2, 2]);
         assert_eq!(longest_edges(&model), [3.0, 10f64.sqrt(), 5.0, 5.0, 5.0]);
     }
 }

@@ -10,7 +10,7 @@ mod variants;
 
 use std::path::PathBuf;
 
-use octogrid::{BuildOptions, Scene};
+use octogrid::{Scene, Structure};
 
 use self::files::{Measured, Report};
 use super::folder::Folder;
@@ -65,15 +65,14 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 
 fn measure_scene(args: &Args, name: &str) -> Result<Measured, Failure> {
     let loaded = load::load(name)?;
-    let (reference, _) = load::build(&loaded.model, &BuildOptions::default())?;
+    let (reference, _) = load::build(&loaded.model, &Default::default())?;
     let mesh = loaded.model.mesh()?;
     let mut sets = Vec::new();
     for set in rays::sets(&loaded, &reference, args.rays as usize, args.seed)? {
         let truths = truth::truth(&reference, &mesh, &set.rays)?;
         sets.push((set, truths));
     }
-    let built =
-        |structure| Ok(load::build(&loaded.model, &BuildOptions { structure, ..Default::default() })?.0);
+    let built = |structure: Structure| Ok(load::build(&loaded.model, &structure.into())?.0);
     let scenes = variants::structures()?.into_iter().map(built).collect::<Result<Vec<Scene>, Failure>>()?;
     let points = measure::measure(&scenes, &sets, args.rounds.into());
     Ok(Measured { scene: name.to_owned(), triangles: mesh.len(), points })

@@ -6,7 +6,7 @@ mod measure;
 
 use std::path::PathBuf;
 
-use octogrid::{BuildOptions, Scene, Structure};
+use octogrid::{Scene, Structure};
 
 use self::files::Report;
 use self::image::{Reference, View};
@@ -85,8 +85,8 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 /// Measures all integrators on a scene, and says what it finds.
 fn measure_scene(args: &Args, name: &str, measured: &mut Vec<Measured>) -> Result<(), Failure> {
     let loaded = load::load(name)?;
-    let built = |structure| {
-        let (scene, _) = load::build(&loaded.model, &BuildOptions { structure, ..Default::default() })?;
+    let built = |structure: Structure| {
+        let (scene, _) = load::build(&loaded.model, &structure.into())?;
         Ok((structure, scene))
     };
     // The default first, since others are compared with it.

@@ -6,7 +6,7 @@
 
 use std::time::Instant;
 
-use octogrid::{BuildOptions, Cluster, Model, Scene, Structure};
+use octogrid::{Cluster, Model, Scene, Structure};
 use serde::Serialize;
 
 use super::columns::{Column, Measure, octree, structures};
@@ -106,7 +106,7 @@ fn equal_memory(model: &Model) -> Result<Structure, Failure> {
 
 /// A scene and the seconds that its build took.
 pub(super) fn built(model: &Model, structure: Structure) -> Result<(Scene, f64), Failure> {
-    let (scene, ms) = load::build(model, &BuildOptions { structure, ..Default::default() })?;
+    let (scene, ms) = load::build(model, &structure.into())?;
     Ok((scene, ms / 1e3))
 }
 

@@ -81,7 +81,8 @@ fn points(model: &Model, rays: &Rays) -> Result<Vec<Point>, Failure> {
     let step = if model.triangles.len() > LARGE { 2 } else { 1 };
     let mut points = Vec::new();
     for structure in grid().into_iter().step_by(step) {
-        let options = BuildOptions { structure, memory_limit: MEMORY_LIMIT, ..Default::default() };
+        let options =
+            BuildOptions { structure: Some(structure), memory_limit: MEMORY_LIMIT, ..Default::default() };
         let start = Instant::now();
         match Scene::build(&model.mesh()?, &options) {
             Ok(scene) => points.push(Point {
@@ -135,10 +136,10 @@ fn grid() -> Vec<Structure> {
     for threshold in [2, 4, 6, 8, 16] {
         grid.extend([0, 3, 7, 15, 31].map(|plane_weight| octree(threshold, plane_weight)));
     }
-    let Structure::Hybrid(default) = Structure::HYBRID else { return grid };
     for density in [0.02, 0.05, 0.1, 0.2, 0.5] {
         grid.extend(
-            [0, 1, 2, 3, 4].map(|levels| Structure::Hybrid(HybridParams { density, levels, ..default })),
+            [0, 1, 2, 3, 4]
+                .map(|levels| Structure::Hybrid(HybridParams { density, levels, ..HybridParams::DEFAULT })),
         );
     }
     grid

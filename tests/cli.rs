@@ -40,6 +40,7 @@ fn help_is_as_documented() {
         snapbox::file!["cli/help-report-stability.txt"]
     );
     assert_data_eq!(help(&["report", "scaling", "--help"]), snapbox::file!["cli/help-report-scaling.txt"]);
+    assert_data_eq!(help(&["report", "plan", "--help"]), snapbox::file!["cli/help-report-plan.txt"]);
 }
 
 #[test]

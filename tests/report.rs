@@ -194,6 +194,33 @@ fn scaling_tells_every_size() {
 }
 
 #[test]
+fn the_plan_is_measured_against_everything() {
+    let folder = Folder::new();
+    let small = ["--rays", "64", "--rounds", "2", "--out", "p"];
+    let run = folder.run(&[&["report", "plan", "cube", "torus", "empty"], &small[..]].concat());
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    for part in ["brute force", "hybrid[0.4,0]", "left out", "geometric mean", "10^6 rays"] {
+        assert!(run.stdout.contains(part), "{part} in {}", run.stdout);
+    }
+    let json = std::fs::read(folder.path("p/report.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    let scenes = json["scenes"].as_array().unwrap();
+    let variants = |scene: &serde_json::Value| -> Vec<String> {
+        let points = scene.as_array().unwrap().iter();
+        points.map(|point| point["variant"].as_str().unwrap().to_owned()).collect()
+    };
+    let structures = ["uniform", "recursive", "octree", "hybrid"];
+    let cube = [&["plan", "all parts", "voxels on"], &structures[..], &["brute"]].concat();
+    let torus = [&["plan", "all parts", "fine-grid off", "bricks on"], &structures[..]].concat();
+    assert_eq!(scenes.iter().map(variants).collect::<Vec<_>>(), [cube, torus]);
+    let csv = std::fs::read_to_string(folder.path("p/report.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 1 + 8 + 8);
+    svg_holds(&folder, "p/savings.svg", &["cube", "torus", "bytes", "% saved"]);
+    let run = folder.run(&["report", "plan", "cube", "--count", "voxels"]);
+    assert!(run.code == Some(2) && run.stderr.contains("no variant 'voxels'"), "{}", run.stderr);
+}
+
+#[test]
 fn wrong_use_is_told() {
     let folder = Folder::new();
     assert_eq!(folder.run(&["report"]).code, Some(2));

@@ -7,6 +7,7 @@ mod folder;
 mod machine;
 mod numbers;
 mod paper;
+mod plan;
 mod plot;
 mod scaling;
 mod stability;
@@ -30,6 +31,7 @@ enum Report {
     Convergence(convergence::Args),
     Stability(stability::Args),
     Scaling(scaling::Args),
+    Plan(plan::Args),
 }
 
 /// Runs the command.
@@ -43,5 +45,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Report::Convergence(args) => convergence::run(args),
         Report::Stability(args) => stability::run(args),
         Report::Scaling(args) => scaling::run(args),
+        Report::Plan(args) => plan::run(args),
     }
 }

@@ -14,7 +14,7 @@ const SIZE: (u32, u32) = (960, 560);
 const LEGEND: u32 = 250;
 const FONT: &str = "sans-serif";
 /// Paul Tol's bright colours, which colour-blind people can tell apart, and two more.
-const COLOURS: [RGBColor; 10] = [
+pub(super) const COLOURS: [RGBColor; 10] = [
     RGBColor(68, 119, 170),
     RGBColor(238, 102, 119),
     RGBColor(34, 136, 51),

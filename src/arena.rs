@@ -258,6 +258,7 @@ impl Arena {
     }
 
     /// The box around all triangles.
+    #[cfg(any(feature = "file", all(test, feature = "oracle")))]
     pub(crate) fn bounds(&self) -> Aabb {
         let boxes = self.clusters.iter().map(|cluster| cluster.bounds(cluster.occupied()));
         boxes.fold(Aabb::EMPTY, Aabb::union)

@@ -1,7 +1,8 @@
 //! Instruction counts under valgrind: `cargo bench --bench instructions`.
 //!
 //! Needs valgrind and gungraun-runner; `cargo bench --bench gate` compares the counts with those that
-//! are committed. Every case checks its answers in its set-up, which is not counted.
+//! are committed. Every case checks its answers in its set-up, which is not counted. Scenes are given back, as
+//! what it takes to free them depends on the heap.
 
 mod cases;
 
@@ -166,8 +167,8 @@ fn room(structure: Structure, walk: Walk, query: Query) -> (Scene, Vec<Ray>, Que
 #[library_benchmark(setup = room)]
 #[bench::general(Structure::OCTREE, Walk::General, Query::Closest)]
 #[bench::special(Structure::OCTREE, Walk::Special, Query::Closest)]
-fn same_octree((scene, rays, query): (Scene, Vec<Ray>, Query)) -> u64 {
-    black_box(run(black_box(&scene), query, black_box(&rays)))
+fn same_octree((scene, rays, query): (Scene, Vec<Ray>, Query)) -> (u64, Scene) {
+    (black_box(run(black_box(&scene), query, black_box(&rays))), scene)
 }
 
 /// Rays that end at their hit, so that a walk over them needs no test to know where to stop.
@@ -182,7 +183,7 @@ fn ended(walk: Walk) -> (Scene, Vec<Ray>) {
 #[library_benchmark(setup = ended)]
 #[bench::general(Walk::General)]
 #[bench::special(Walk::Special)]
-fn same_octree_without_tests((scene, rays): (Scene, Vec<Ray>)) -> u32 {
+fn same_octree_without_tests((scene, rays): (Scene, Vec<Ray>)) -> (u32, Scene) {
     let mut clusters = 0;
     for ray in black_box(&rays) {
         scene.clusters_along(ray, |_| {
@@ -190,7 +191,7 @@ fn same_octree_without_tests((scene, rays): (Scene, Vec<Ray>)) -> u32 {
             ControlFlow::Continue(())
         });
     }
-    black_box(clusters)
+    (black_box(clusters), scene)
 }
 
 #[library_benchmark(setup = room)]
@@ -206,8 +207,8 @@ fn same_octree_without_tests((scene, rays): (Scene, Vec<Ray>)) -> u32 {
 #[bench::hybrid_closest(Structure::HYBRID, Walk::Special, Query::Closest)]
 #[bench::hybrid_any(Structure::HYBRID, Walk::Special, Query::Any)]
 #[bench::hybrid_all(Structure::HYBRID, Walk::Special, Query::All)]
-fn structures((scene, rays, query): (Scene, Vec<Ray>, Query)) -> u64 {
-    black_box(run(black_box(&scene), query, black_box(&rays)))
+fn structures((scene, rays, query): (Scene, Vec<Ray>, Query)) -> (u64, Scene) {
+    (black_box(run(black_box(&scene), query, black_box(&rays))), scene)
 }
 
 /// A scene as its plan says, or with all parts of a structure.
@@ -224,8 +225,8 @@ fn planned(name: &'static str, all: bool) -> (Scene, Vec<Ray>) {
 #[bench::evenly_spread("torus", false)]
 #[bench::evenly_spread_with_all_parts("torus", true)]
 #[bench::crowded("stadium", false)]
-fn plan((scene, rays): (Scene, Vec<Ray>)) -> u64 {
-    black_box(run(black_box(&scene), Query::Closest, black_box(&rays)))
+fn plan((scene, rays): (Scene, Vec<Ray>)) -> (u64, Scene) {
+    (black_box(run(black_box(&scene), Query::Closest, black_box(&rays))), scene)
 }
 
 /// A cluster of triangles in front of a ray, one of them in its way.
@@ -293,8 +294,8 @@ fn sixteen(sixteen: Sixteen) -> (Scene, [RayPacket; 2]) {
 #[bench::together(Sixteen::Together)]
 #[bench::apart(Sixteen::Apart)]
 #[bench::at_a_small_object(Sixteen::AtASmallObject)]
-fn sixteen_rays((scene, packets): (Scene, [RayPacket; 2])) -> u32 {
-    black_box(black_box(&scene).closest_packet(black_box(&packets))[1].get(7).prim)
+fn sixteen_rays((scene, packets): (Scene, [RayPacket; 2])) -> (u32, Scene) {
+    (black_box(black_box(&scene).closest_packet(black_box(&packets))[1].get(7).prim), scene)
 }
 
 library_benchmark_group!(

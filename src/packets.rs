@@ -54,23 +54,33 @@ impl Scene {
                 }
             }
         }
-        let group = if len >= FEWEST && point_alike(&rays[..len]) {
-            let mut group = Group::new();
-            group.load(len, |i| rays[i]);
-            traverse::group::<ANY>(self.isa, &self.arena, &mut group).then_some(group)
-        } else {
-            None
-        };
-        for i in 0..len {
-            let hit = if let Some(group) = &group {
-                group.hit(i)
-            } else if ANY {
-                Hit { prim: if self.occluded(&rays[i]) { 0 } else { u32::MAX }, ..Hit::MISS }
-            } else {
-                self.closest(&rays[i])
-            };
-            answer(lanes[i].0, lanes[i].1, hit);
+        let mut answer = |i: usize, hit| answer(lanes[i].0, lanes[i].1, hit);
+        if self.trace_together::<ANY>(&rays[..len], &mut answer) {
+            return;
         }
+        for (i, ray) in rays[..len].iter().enumerate() {
+            let hit = if ANY {
+                Hit { prim: if self.occluded(ray) { 0 } else { u32::MAX }, ..Hit::MISS }
+            } else {
+                self.closest(ray)
+            };
+            answer(i, hit);
+        }
+    }
+
+    /// False where the rays don't go alike, and nothing is answered. Groups are large: none is made for rays apart,
+    /// and none is moved.
+    fn trace_together<const ANY: bool>(&self, rays: &[Ray], mut answer: impl FnMut(usize, Hit)) -> bool {
+        if rays.len() < FEWEST || !point_alike(rays) {
+            return false;
+        }
+        let mut group = Group::new();
+        group.load(rays.len(), |i| rays[i]);
+        let together = traverse::group::<ANY>(self.isa, &self.arena, &mut group);
+        if together {
+            (0..rays.len()).for_each(|i| answer(i, group.hit(i)));
+        }
+        together
     }
 }
 

@@ -13,9 +13,7 @@ use cases::{Case, Query, run};
 use glam::Vec3;
 use gungraun::{library_benchmark, library_benchmark_group, main};
 use octogrid::descent::{General, Halves, Walk, first_exit};
-use octogrid::{
-    BuildOptions, Cluster, EdgeRule, Forced, Isa, Part, Ray, RayPacket, Scene, Structure, intersect,
-};
+use octogrid::{BuildOptions, Cluster, EdgeRule, Forced, Isa, Ray, RayPacket, Scene, Structure, intersect};
 
 /// When a ray enters a divided voxel: exits, widths, time, rising axes.
 type Entry = ([f64; 3], [f64; 3], f64, u32);
@@ -214,8 +212,7 @@ fn structures((scene, rays, query): (Scene, Vec<Ray>, Query)) -> (u64, Scene) {
 /// A scene as its plan says, or with all parts of a structure.
 fn planned(name: &'static str, all: bool) -> (Scene, Vec<Ray>) {
     let case = Case::new(name, 256);
-    let with = |forced: Forced, part| if all { forced.with(part, true) } else { forced };
-    let forced = Part::ALL.into_iter().fold(Forced::default(), with);
+    let forced = if all { Forced::all(true) } else { Forced::default() };
     (case.scene_with(&BuildOptions { forced, ..Default::default() }), case.rays)
 }
 

@@ -107,6 +107,16 @@ fn analyze_tells_what_is_left_out_and_why() {
     }
 }
 
+/// One structure over the limit says nothing of the others.
+#[test]
+fn analyze_goes_on_where_a_plan_is_over_the_limit() {
+    let run = Folder::new().run(&["analyze", "soup", "--memory-limit", "6M"]);
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
+    for part in ["Plan: hybrid[0.1,0]", "with all parts not built (the structure needs at least", "R[19,4]"] {
+        assert!(run.stdout.contains(part), "{part} in {}", run.stdout);
+    }
+}
+
 #[test]
 fn forced_parts_change_no_pixel() {
     let folder = Folder::new();

@@ -41,6 +41,11 @@ impl Part {
 pub struct Forced([Option<bool>; Part::ALL.len()]);
 
 impl Forced {
+    /// All parts kept (`true`) or left out.
+    pub fn all(keep: bool) -> Self {
+        Self([Some(keep); Part::ALL.len()])
+    }
+
     /// The same, and a part that is kept (`true`) or left out.
     pub fn with(mut self, part: Part, keep: bool) -> Self {
         self.0[part as usize] = Some(keep);

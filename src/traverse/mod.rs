@@ -43,7 +43,7 @@ pub(crate) trait Visit {
     /// The voxel holds a cluster. `Break` ends the walk.
     fn cluster(&mut self, index: u32) -> ControlFlow<()>;
 
-    /// The same for a cluster that comes only once.
+    /// The same for a cluster that comes once, or so seldom again that to remember it does not pay.
     #[inline(always)]
     fn only(&mut self, index: u32) -> ControlFlow<()> {
         self.cluster(index)

@@ -1,6 +1,6 @@
 //! `octogrid analyze`: what a scene is made of, what of a structure it needs, and the structures side by side.
 
-use octogrid::{BuildOptions, Forced, Model, Part, Plan, SceneProfile, Statistics};
+use octogrid::{BuildOptions, Forced, Model, Plan, SceneProfile, Statistics};
 
 use crate::args::{BuildArgs, Choice};
 use crate::failure::Failure;
@@ -32,7 +32,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let loaded = load::load(&args.scene)?;
     let measured: Vec<_> = options.iter().map(|options| measure(&loaded.model, options)).collect();
     let profile = SceneProfile::new(&loaded.model.mesh()?);
-    let plan = plan(&loaded.model, &profile, &options[0])?;
+    let plan = plan(&loaded.model, &profile, &options[0], &measured[0]);
     let facts = table::pairs(geometry(&loaded).into_iter().chain(lie(&profile)));
     let text = format!("{facts}\n\n{plan}\n\n{}", structures(&options, &measured));
     // One structure over the limit says nothing of the others, but is the answer where it is alone.
@@ -43,28 +43,26 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
+type Measured = Result<(f64, f64, Statistics), Failure>;
+
 /// Milliseconds, bytes a triangle, and the parts of a structure that holds all its invariants.
-fn measure(model: &Model, options: &BuildOptions) -> Result<(f64, f64, Statistics), Failure> {
+fn measure(model: &Model, options: &BuildOptions) -> Measured {
     let (scene, build_ms) = load::build(model, options)?;
     let statistics = scene.validate().map_err(|violation| Failure::Expected(violation.to_string()))?;
     Ok((build_ms, load::bytes_per_triangle(&scene), statistics))
 }
 
-/// The plan, and what it saves.
-fn plan(model: &Model, profile: &SceneProfile, options: &BuildOptions) -> Result<String, Failure> {
-    let forced = options.forced;
-    let plan = Plan::new(profile, forced);
-    let all = Part::ALL.into_iter().fold(Forced::default(), |forced, part| forced.with(part, true));
-    let built = |forced| -> Result<String, Failure> {
-        let (scene, ms) = load::build(model, &BuildOptions { structure: None, forced, ..*options })?;
-        Ok(format!("{:.1} bytes a triangle, built in {ms:.2} ms", load::bytes_per_triangle(&scene)))
+/// The plan, and what it saves. `measured` is of the first structure that was asked for, the plan's if none was.
+fn plan(model: &Model, profile: &SceneProfile, options: &BuildOptions, measured: &Measured) -> String {
+    let plan = Plan::new(profile, options.forced);
+    let built = |measured: &Measured| match measured {
+        Ok((ms, bytes, _)) => format!("{bytes:.1} bytes a triangle, built in {ms:.2} ms"),
+        Err(Failure::Usage(what) | Failure::Expected(what)) => format!("not built ({what})"),
     };
-    Ok(format!(
-        "Plan: {}\n{plan}\nThat is {}; with all parts {}.",
-        plan.structure(),
-        built(forced)?,
-        built(all)?
-    ))
+    let measure = |forced| built(&measure(model, &BuildOptions { structure: None, forced, ..*options }));
+    let planned = if options.structure.is_none() { built(measured) } else { measure(options.forced) };
+    let all = measure(Forced::all(true));
+    format!("Plan: {}\n{plan}\nThat is {planned}; with all parts {all}.", plan.structure())
 }
 
 /// How the triangles lie, as far as the plan depends on it.
@@ -110,7 +108,7 @@ fn geometry(loaded: &Loaded) -> Vec<(&'static str, String)> {
 }
 
 /// One row a structure.
-fn structures(options: &[BuildOptions], measured: &[Result<(f64, f64, Statistics), Failure>]) -> String {
+fn structures(options: &[BuildOptions], measured: &[Measured]) -> String {
     let header = [
         "structure",
         "build, ms",

@@ -1,7 +1,5 @@
 //! Ratios of the plan to what it is compared with.
 
-use serde::Serialize;
-
 use super::measure::Point;
 use super::variants::Kind;
 
@@ -9,7 +7,7 @@ use super::variants::Kind;
 pub(super) const IMAGES: [f64; 3] = [1e5, 1e6, 1e7];
 
 /// The figures of the plan relative to others: below 1 where it saves.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Ratios {
     pub(super) bytes: f64,
     /// Instructions, or cluster tests and cache lines.

@@ -5,10 +5,6 @@ use octogrid::{BuildOptions, Forced, Part, Plan, SceneProfile, Structure};
 /// The most triangles that are traced without voxels: it takes as long as there are triangles.
 const BRUTE: usize = 512;
 
-/// The names of the plan and of all its parts.
-pub(super) const PLAN: &str = "plan";
-pub(super) const ALL: &str = "all parts";
-
 /// One way to build a scene.
 pub(super) struct Variant {
     pub(super) name: String,
@@ -30,15 +26,14 @@ pub(super) enum Kind {
 /// The plan, all parts, the plan with each part that matters the other way round, and every structure.
 pub(super) fn variants(profile: &SceneProfile) -> Vec<Variant> {
     let plan = Plan::new(profile, Forced::default());
-    let all = Part::ALL.into_iter().fold(Forced::default(), |forced, part| forced.with(part, true));
     let planned = |name: String, forced, kind| Variant {
         name,
         options: BuildOptions { forced, ..Default::default() },
         kind,
     };
     let mut variants = vec![
-        planned(PLAN.to_owned(), Forced::default(), Kind::Plan),
-        planned(ALL.to_owned(), all, Kind::All),
+        planned("plan".to_owned(), Forced::default(), Kind::Plan),
+        planned("all parts".to_owned(), Forced::all(true), Kind::All),
     ];
     let small = profile.triangles <= BRUTE;
     for part in Part::ALL {

@@ -193,9 +193,21 @@ impl Clock {
     /// A time no hit comes after whose distance rounds to `t` or less.
     #[inline(always)]
     fn time(self, t: f32) -> f64 {
-        let time = f64::from(t) * self.speed;
         // Twice half a unit in the last place of t, so that rounding here is covered.
-        time + time.abs() * (2.0 * HALF_ULP) + self.zero
+        const MORE: f64 = 1.0 + 2.0 * HALF_ULP;
+        const LESS: f64 = 1.0 - 2.0 * HALF_ULP;
+        let t = f64::from(t);
+        greater(t * (self.speed * MORE), t * (self.speed * LESS)) + self.zero
+    }
+
+    /// The same in f32, later by a few ulps of its terms. Short, as the walk waits for it.
+    #[inline(always)]
+    pub(crate) fn rounded_time(self, t: f32) -> f32 {
+        const ULP: f64 = f32::EPSILON as f64;
+        let t = f64::from(t);
+        let zero = self.zero + (self.zero.abs() * (2.0 * ULP) + 2.0 * LEAST);
+        let time = greater(t * (self.speed * (1.0 + 2.0 * ULP)), t * (self.speed * (1.0 - 2.0 * ULP)));
+        (time + zero) as f32
     }
 }
 
@@ -233,6 +245,11 @@ const LEAST_SPEED: f64 = 1.0 / (1u64 << 60) as f64;
 #[inline(always)]
 fn lesser(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// No less than the largest distance that rounds to `t`: hits count if their rounded distance is within.

@@ -6,11 +6,11 @@
 use glam::Vec3;
 
 use crate::cluster::Cluster;
-use crate::filter::{RayLanes, Scale, candidates};
+use crate::filter::{Certain, Products, RayLanes, Scale, candidates, certain, possible, products};
 use crate::lanes::{Lanes, Once, Rounding, Twice, Vec3Lanes, axes, cross, dot, minus};
 use crate::query::EdgeRule;
 use crate::ray::Ray;
-use crate::triangle::{Intersection, clear_hit, decide};
+use crate::triangle::{Intersection, clear_hit, decide, known_hit};
 
 /// A way to intersect a ray with triangles, for [`Scene::query_with`](crate::Scene::query_with).
 ///
@@ -55,6 +55,12 @@ pub(crate) trait Test {
     /// The lanes that may be hit, as bits, and what was found.
     fn filter<L: Lanes>(lanes: L, ray: &RayLanes<L>, cluster: &Cluster) -> (u32, Self::Found<L>);
 
+    /// Lanes whose hit is certain without a decision. Not for scaled directions.
+    #[inline(always)]
+    fn certain<L: Lanes>(_: L, _: &RayLanes<L>, _: &Self::Found<L>) -> Option<Certain<L>> {
+        None
+    }
+
     /// The hit of one of these lanes.
     fn decide<L: Lanes>(lanes: L, found: &Self::Found<L>, subject: &Subject<'_>) -> Option<Intersection>;
 }
@@ -69,18 +75,31 @@ pub(crate) struct Plain;
 pub(crate) struct Fused;
 
 impl Test for Exact {
-    type Found<L: Lanes> = ();
+    type Found<L: Lanes> = Products<L>;
 
     #[inline(always)]
-    fn filter<L: Lanes>(lanes: L, ray: &RayLanes<L>, cluster: &Cluster) -> (u32, ()) {
-        (candidates(lanes, ray, cluster.lanes(lanes)), ())
+    fn filter<L: Lanes>(lanes: L, ray: &RayLanes<L>, cluster: &Cluster) -> (u32, Products<L>) {
+        let products = products(lanes, ray, cluster.lanes(lanes));
+        (possible(lanes, ray, &products), products)
     }
 
     #[inline(always)]
-    fn decide<L: Lanes>(_: L, (): &(), subject: &Subject<'_>) -> Option<Intersection> {
+    fn certain<L: Lanes>(lanes: L, ray: &RayLanes<L>, products: &Products<L>) -> Option<Certain<L>> {
+        Some(certain(lanes, ray, products))
+    }
+
+    #[inline(always)]
+    fn decide<L: Lanes>(_: L, _: &Products<L>, subject: &Subject<'_>) -> Option<Intersection> {
         let &Subject { ray, cluster, lane, rule } = subject;
         clear_hit(ray, cluster.triangle(lane)).or_else(|| unclear(ray, cluster, lane, rule))
     }
+}
+
+/// What [`Exact`] decides about a lane that [`Test::certain`] names, its bounds of t that far apart.
+#[inline(always)]
+pub(crate) fn known(subject: &Subject<'_>, width: f32) -> Option<Intersection> {
+    let &Subject { ray, cluster, lane, rule } = subject;
+    known_hit(ray, cluster.triangle(lane), width).or_else(|| unclear(ray, cluster, lane, rule))
 }
 
 /// What [`Exact`] does about the few lanes that are not a clear hit; it loads the corners again, so that they
@@ -96,7 +115,7 @@ impl Test for Double {
 
     #[inline(always)]
     fn filter<L: Lanes>(lanes: L, ray: &RayLanes<L>, cluster: &Cluster) -> (u32, ()) {
-        Exact::filter(lanes, ray, cluster)
+        (candidates(lanes, ray, cluster.lanes(lanes)), ())
     }
 
     #[inline(always)]

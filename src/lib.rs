@@ -48,7 +48,7 @@ pub use kernel::Kernel;
 pub use lanes::Isa;
 pub use mesh::{MeshError, TriMesh};
 pub use model::{Material, Model};
-pub use query::{All, Any, Closest, Counting, Counts, EdgeRule, Query};
+pub use query::{All, Any, Closest, Counting, Counts, EdgeRule, Query, Wanted};
 pub use ray::{Ray, RayPacket};
 pub use rng::Rng;
 pub use scene::{AllHits, Scene};

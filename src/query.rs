@@ -19,6 +19,44 @@ pub enum EdgeRule {
     Crossing,
 }
 
+/// Which hits a query has to be offered.
+///
+/// A query of one's own gets all of them unless it says that it needs less:
+///
+/// ```
+/// use octogrid::{EdgeRule, Hit, Query, Ray, Scene, Wanted, builtin};
+/// use std::ops::ControlFlow;
+/// /// Looks through every second triangle.
+/// struct Holes(Hit);
+/// impl Query for Holes {
+///     const RULE: EdgeRule = EdgeRule::Closed;
+///     const WANTED: Wanted = Wanted::All;
+///     fn t_max(&self) -> f32 {
+///         self.0.t
+///     }
+///     fn accept(&mut self, hit: Hit) -> ControlFlow<()> {
+///         if hit.prim % 2 == 0 && hit.precedes(&self.0) {
+///             self.0 = hit;
+///         }
+///         ControlFlow::Continue(())
+///     }
+/// }
+/// let scene = Scene::build(&builtin::cube().mesh()?, &Default::default())?;
+/// let mut query = Holes(Hit::MISS);
+/// scene.query(&Ray::new([0.1, 0.2, 9.0], [0.0, 0.0, -1.0]), &mut query);
+/// assert_eq!(query.0.prim % 2, 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// All within the interval.
+    All,
+    /// The closest one; of the others any number, in any order.
+    Closest,
+    /// One, if there is any. Its t, u and v are not specified, and it ends the walk.
+    Any,
+}
+
 /// A sink for hits that steers the traversal.
 ///
 /// A triangle that lies in several voxels may be offered several times, with the same bits.
@@ -26,6 +64,9 @@ pub enum EdgeRule {
 pub trait Query {
     /// Which triangles a ray through an edge or vertex meets.
     const RULE: EdgeRule;
+
+    /// Which hits it has to be offered: the less, the faster.
+    const WANTED: Wanted = Wanted::All;
 
     /// Hits beyond this t are of no use (closed end). May only fall during the walk.
     fn t_max(&self) -> f32;
@@ -64,6 +105,7 @@ impl Closest {
 
 impl Query for Closest {
     const RULE: EdgeRule = EdgeRule::Closed;
+    const WANTED: Wanted = Wanted::Closest;
 
     #[inline(always)]
     fn t_max(&self) -> f32 {
@@ -101,6 +143,7 @@ impl Any {
 
 impl Query for Any {
     const RULE: EdgeRule = EdgeRule::Closed;
+    const WANTED: Wanted = Wanted::Any;
 
     #[inline(always)]
     fn t_max(&self) -> f32 {
@@ -241,6 +284,7 @@ impl<Q: Query> Counting<Q> {
 
 impl<Q: Query> Query for Counting<Q> {
     const RULE: EdgeRule = Q::RULE;
+    const WANTED: Wanted = Q::WANTED;
 
     fn t_max(&self) -> f32 {
         self.query.t_max()

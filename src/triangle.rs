@@ -51,15 +51,32 @@ pub fn intersect(ray: &Ray, corners: [Vec3; 3], rule: EdgeRule) -> Option<Inters
 #[inline(always)]
 pub(crate) fn clear_hit(ray: &Ray, corners: [Vec3; 3]) -> Option<Intersection> {
     let rounded = Rounded::new(ray, corners);
-    if rounded.is_inside() { rounded.intersection() } else { None }
+    if rounded.is_inside() { rounded.hit(Rounded::error) } else { None }
+}
+
+/// The same where [`crate::filter::certain`] has shown that it is one, and `width` is that of its bounds of t:
+/// those of det and e2.q are 2^29 times ours.
+#[inline(always)]
+pub(crate) fn known_hit(ray: &Ray, corners: [Vec3; 3], width: f32) -> Option<Intersection> {
+    const SHARE: f64 = 1.0 / (1u64 << 29) as f64;
+    let error = f64::from(width) * SHARE;
+    Rounded::new(ray, corners).hit(
+        #[inline(always)]
+        |_, _, _| error,
+    )
 }
 
 /// Decides on what is not a clear hit.
 #[cold]
 #[inline(never)]
 pub(crate) fn decide(ray: &Ray, corners: [Vec3; 3], rule: EdgeRule) -> Option<Intersection> {
-    let outside = Rounded::new(ray, corners).is_outside();
-    if outside { None } else { decide_exact(ray, corners, rule).filter(|at| at.t.is_finite()) }
+    let rounded = Rounded::new(ray, corners);
+    if rounded.is_outside() {
+        return None;
+    }
+    let exact = decide_exact(ray, corners, rule).filter(|at| at.t.is_finite())?;
+    // u and v do not depend on what was known about t.
+    Some(if rounded.is_inside() { rounded.at(exact.t, 1.0 / rounded.det) } else { exact })
 }
 
 /// A triangle and a line in f64, with the bounds of the rounding errors.
@@ -116,17 +133,28 @@ impl Rounded {
         self.det > self.det_bound && (0..3).any(|i| self.w[i] < -self.w_bounds[i])
     }
 
-    /// Where what is inside is met; `None` where the error of t leaves a doubt, or where it is no f32.
+    /// Where what is inside is met; `None` where the error of t, but for that of the division, leaves a doubt,
+    /// or where it is no f32.
     #[inline(always)]
-    fn intersection(&self) -> Option<Intersection> {
+    fn hit(&self, error: impl Fn(&Self, f64, f64) -> f64) -> Option<Intersection> {
         let inverse = 1.0 / self.det;
         let t = self.numerator * inverse;
-        let error =
-            t.abs() * (self.det_bound * inverse + 4.0 * f64::EPSILON) + self.numerator_bound * inverse;
-        let rounded = (t - error) as f32;
+        let error = error(self, t, inverse) + t.abs() * (4.0 * f64::EPSILON);
+        // Not one of the two that the error decides on: the walk need not wait for that.
+        let at = self.at(t as f32, inverse);
+        (((t - error) as f32 == (t + error) as f32) & (at.t.abs() <= f32::MAX)).then_some(at)
+    }
+
+    /// A bound of the error of t that stems from those of its terms.
+    #[inline(always)]
+    fn error(&self, t: f64, inverse: f64) -> f64 {
+        t.abs() * (self.det_bound * inverse) + self.numerator_bound * inverse
+    }
+
+    #[inline(always)]
+    fn at(&self, t: f32, inverse: f64) -> Intersection {
         let [_, w1, w2] = self.w;
-        let at = Intersection { t: rounded + 0.0, u: (w1 * inverse) as f32, v: (w2 * inverse) as f32 };
-        ((rounded == (t + error) as f32) & (rounded.abs() <= f32::MAX)).then_some(at)
+        Intersection { t: t + 0.0, u: (w1 * inverse) as f32, v: (w2 * inverse) as f32 }
     }
 }
 

@@ -61,13 +61,6 @@ impl<const BRICKS: bool> Walker for Hybrid<BRICKS> {
     }
 }
 
-/// The time of the limit, rounded up. It is finite, as the path leaves the grid: boxes of no cluster are met
-/// at infinity.
-#[inline(always)]
-fn last(limit: Limit) -> f32 {
-    above(limit.time)
-}
-
 /// A brick on the stack: its voxels that are still to be visited.
 #[derive(Clone, Copy)]
 struct Frame {
@@ -84,8 +77,11 @@ struct Cells<'a, L: Lanes, V> {
     clock: Clock,
     visit: &'a mut V,
     limit: Limit,
-    /// [`last`] of the limit.
+    /// The time of the limit, rounded up. It is finite, as the path leaves the grid: boxes of no cluster are
+    /// met at infinity.
     last: f32,
+    /// When the path leaves the grid, rounded up.
+    end: f32,
     /// Time a cell, with the sign of the direction.
     slope: Vec3Lanes<L>,
     /// Minus the time at which the path passes the grid's lower corner.
@@ -108,7 +104,20 @@ impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
         let (octant, clock) = (path.octant, path.clock);
         let limit = Limit::new(clock, end, visit.t_max());
         let (slope, delay) = (splat(slope), splat(delay));
-        Self { lanes, arena, octant, clock, visit, last: last(limit), limit, slope, delay }
+        let (last, end) = (above(limit.time), above(end));
+        Self { lanes, arena, octant, clock, visit, limit, last, end, slope, delay }
+    }
+
+    /// Follows the query's `t_max`, and says whether it has changed.
+    #[inline(always)]
+    fn narrow(&mut self) -> bool {
+        let t_max = self.visit.t_max();
+        let changed = self.limit.update(self.clock, t_max);
+        if changed {
+            let last = self.clock.rounded_time(t_max);
+            self.last = if last < self.end { last } else { self.end };
+        }
+        changed
     }
 
     /// Visits the occupied voxels of a brick that the path meets, front to back, and what is below.
@@ -179,8 +188,7 @@ impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
                 let lane = met.trailing_zeros() as usize;
                 met &= met - 1;
                 self.visit.only(group.clusters[lane].cluster())?;
-                if self.limit.update(self.clock, self.visit.t_max()) {
-                    self.last = last(self.limit);
+                if self.narrow() {
                     met &= self.overlapping(start, self.lanes.splat(self.last));
                 }
             }

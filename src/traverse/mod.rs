@@ -103,24 +103,32 @@ macro_rules! dispatch_walk {
 #[inline(always)]
 pub(crate) fn query<K: Test, Q: Query>(isa: Isa, arena: &Arena, walk: Walk, ray: &Ray, query: &mut Q) {
     dispatch_walk!(arena, walk, W => dispatch!(isa, lanes => {
-        along::<W, _, _>(lanes, arena, ray, &mut LeafTest::<_, K, Q>::new(lanes, arena, ray, query))
+        let mut leaves = LeafTest::<_, K, Q>::new(lanes, arena, ray, query);
+        if along::<W, _, _>(lanes, arena, ray, &mut leaves).is_continue() {
+            leaves.finish();
+        }
     }));
 }
 
 /// Walks along a ray.
 #[inline(always)]
 pub(crate) fn visit<V: Visit>(isa: Isa, arena: &Arena, walk: Walk, ray: &Ray, visit: &mut V) {
-    dispatch_walk!(arena, walk, W => dispatch!(isa, lanes => along::<W, _, _>(lanes, arena, ray, visit)));
+    dispatch_walk!(arena, walk, W => dispatch!(isa, lanes => {
+        // How the walk ended is no news.
+        let _ = along::<W, _, _>(lanes, arena, ray, visit);
+    }));
 }
 
 #[inline(always)]
-fn along<W: Walker, L: Lanes, V: Visit>(lanes: L, arena: &Arena, ray: &Ray, visit: &mut V) {
+fn along<W: Walker, L: Lanes, V: Visit>(
+    lanes: L,
+    arena: &Arena,
+    ray: &Ray,
+    visit: &mut V,
+) -> ControlFlow<()> {
     match Path::clip(lanes, ray, &arena.grid) {
-        Clip::Miss => {}
-        Clip::Path(path) => {
-            // How the walk ended is no news.
-            let _ = W::walk(lanes, arena, &path, visit);
-        }
+        Clip::Miss => ControlFlow::Continue(()),
+        Clip::Path(path) => W::walk(lanes, arena, &path, visit),
         Clip::TooFar => every_cluster(arena, visit),
     }
 }
@@ -128,8 +136,8 @@ fn along<W: Walker, L: Lanes, V: Visit>(lanes: L, arena: &Arena, ray: &Ray, visi
 /// Visits all clusters, for a ray that no walk can follow.
 #[cold]
 #[inline(never)]
-fn every_cluster<V: Visit>(arena: &Arena, visit: &mut V) {
-    let _ = (0..arena.clusters.len() as u32).try_for_each(|index| visit.only(index));
+fn every_cluster<V: Visit>(arena: &Arena, visit: &mut V) -> ControlFlow<()> {
+    (0..arena.clusters.len() as u32).try_for_each(|index| visit.only(index))
 }
 
 /// Traces the rays of a group together; false where they don't go alike, and its hits mean nothing.

@@ -51,7 +51,7 @@ pub enum EdgeRule {
 pub enum Wanted {
     /// All within the interval.
     All,
-    /// The closest one; of the others any number, in any order.
+    /// The closest one; of the others any number, in any order. Not for a query that refuses hits.
     Closest,
     /// One, if there is any. Its t, u and v are not specified, and it ends the walk.
     Any,

@@ -26,25 +26,27 @@ pub enum EdgeRule {
 /// ```
 /// use octogrid::{EdgeRule, Hit, Query, Ray, Scene, Wanted, builtin};
 /// use std::ops::ControlFlow;
-/// /// Looks through every second triangle.
-/// struct Holes(Hit);
-/// impl Query for Holes {
+/// /// Looks through one triangle.
+/// struct Without(u32, Hit);
+/// impl Query for Without {
 ///     const RULE: EdgeRule = EdgeRule::Closed;
 ///     const WANTED: Wanted = Wanted::All;
 ///     fn t_max(&self) -> f32 {
-///         self.0.t
+///         self.1.t
 ///     }
 ///     fn accept(&mut self, hit: Hit) -> ControlFlow<()> {
-///         if hit.prim % 2 == 0 && hit.precedes(&self.0) {
-///             self.0 = hit;
+///         if hit.prim != self.0 && hit.precedes(&self.1) {
+///             self.1 = hit;
 ///         }
 ///         ControlFlow::Continue(())
 ///     }
 /// }
 /// let scene = Scene::build(&builtin::cube().mesh()?, &Default::default())?;
-/// let mut query = Holes(Hit::MISS);
-/// scene.query(&Ray::new([0.1, 0.2, 9.0], [0.0, 0.0, -1.0]), &mut query);
-/// assert_eq!(query.0.prim % 2, 0);
+/// let ray = Ray::new([0.1, 0.2, 9.0], [0.0, 0.0, -1.0]);
+/// let front = scene.closest(&ray);
+/// let mut query = Without(front.prim, Hit::MISS);
+/// scene.query(&ray, &mut query);
+/// assert!(query.1.t > front.t && query.1.is_hit());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -194,20 +194,21 @@ impl Clock {
     #[inline(always)]
     fn time(self, t: f32) -> f64 {
         // Twice half a unit in the last place of t, so that rounding here is covered.
-        const MORE: f64 = 1.0 + 2.0 * HALF_ULP;
-        const LESS: f64 = 1.0 - 2.0 * HALF_ULP;
-        let t = f64::from(t);
-        greater(t * (self.speed * MORE), t * (self.speed * LESS)) + self.zero
+        self.later(t, 2.0 * HALF_ULP) + self.zero
     }
 
     /// The same in f32, later by a few ulps of its terms. Short, as the walk waits for it.
     #[inline(always)]
     pub(crate) fn rounded_time(self, t: f32) -> f32 {
-        const ULP: f64 = f32::EPSILON as f64;
+        const MORE: f64 = 4.0 * HALF_ULP;
+        (self.later(t, MORE) + (self.zero + (self.zero.abs() * MORE + 2.0 * LEAST))) as f32
+    }
+
+    /// The time from t = 0 to `t`, raised by `more` of itself.
+    #[inline(always)]
+    fn later(self, t: f32, more: f64) -> f64 {
         let t = f64::from(t);
-        let zero = self.zero + (self.zero.abs() * (2.0 * ULP) + 2.0 * LEAST);
-        let time = greater(t * (self.speed * (1.0 + 2.0 * ULP)), t * (self.speed * (1.0 - 2.0 * ULP)));
-        (time + zero) as f32
+        greater(t * (self.speed * (1.0 + more)), t * (self.speed * (1.0 - more)))
     }
 }
 

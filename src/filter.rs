@@ -183,7 +183,7 @@ pub(crate) fn above(x: f64) -> f32 {
 /// exclude nothing.
 #[inline(always)]
 pub(crate) fn candidates<L: Lanes>(lanes: L, ray: &RayLanes<L>, corners: [Vec3Lanes<L>; 3]) -> u32 {
-    possible(lanes, ray, &products(lanes, ray, corners))
+    products(lanes, ray, corners).bounded(lanes, ray).possible(lanes, ray)
 }
 
 /// What a ray and triangles are judged by.
@@ -217,27 +217,79 @@ pub(crate) struct Products<L: Lanes> {
 /// What is added to E to cover what underflows.
 pub(crate) const TINY: f32 = 1.0 / (1u64 << 40) as f32;
 
-/// The lanes that the products do not exclude, as bits.
-#[inline(always)]
-pub(crate) fn possible<L: Lanes>(lanes: L, ray: &RayLanes<L>, products: &Products<L>) -> u32 {
-    let &Products { det, w: [w1, w2], numerator, a, e } = products;
-    let (abs, sign) = (lanes.abs(det), lanes.sign(det));
-    let (w1, w2, numerator) = (sign * w1, sign * w2, sign * numerator);
-    // 16 D E (A + E) and 16 D E E (A + |t|) are above every intermediate value, so that they overflow first.
-    let eps = lanes.splat(2f32.powi(-21));
-    let de = ray.bound * e;
-    let ee = de * e;
-    let det_slack = eps * ee;
-    let slack = lanes.mul_add(eps, de * a, det_slack);
-    let least = lanes.min(lanes.min(w1, w2), abs - (w1 + w2));
-    let outside = lanes.less(least + slack, lanes.splat(0.0));
-    let (eea, tiny) = (ee * a, lanes.splat(2f32.powi(-97)) * e);
-    let late = lanes.mul_add(eps, lanes.mul_add(ee, lanes.abs(ray.t_max), eea), tiny);
-    let early = lanes.mul_add(eps, lanes.mul_add(ee, lanes.abs(ray.t_min), eea), tiny);
-    let beyond = lanes.less(lanes.mul_add(ray.t_max, abs, late), numerator)
-        | lanes.less(numerator + early, ray.t_min * abs);
-    let certain = lanes.less(det_slack, abs);
-    !lanes.bits(outside | (beyond & certain)) & 0xff
+impl<L: Lanes> Products<L> {
+    /// With the bounds of their errors.
+    #[inline(always)]
+    pub(crate) fn bounded(&self, lanes: L, ray: &RayLanes<L>) -> Bounded<L> {
+        let &Self { det, w: [w1, w2], numerator, a, e } = self;
+        let (abs, sign) = (lanes.abs(det), lanes.sign(det));
+        let (w1, w2, numerator) = (sign * w1, sign * w2, sign * numerator);
+        // 16 D E (A + E) and 16 D E E (A + |t|) are above every intermediate value, so that they overflow first.
+        let eps = lanes.splat(EPS);
+        let de = ray.bound * e;
+        let ee = de * e;
+        let det_slack = eps * ee;
+        let slack = lanes.mul_add(eps, de * a, det_slack);
+        let least = lanes.min(lanes.min(w1, w2), abs - (w1 + w2));
+        let (eea, tiny) = (ee * a, lanes.splat(2f32.powi(-97)) * e);
+        Bounded { det: abs, numerator, least, slack, det_slack, ee, eea, tiny }
+    }
+}
+
+/// The least of w0, w1 and w2, det and e2.q, with the sign of det, and the bounds of their errors.
+pub(crate) struct Bounded<L: Lanes> {
+    det: L::F32,
+    numerator: L::F32,
+    least: L::F32,
+    /// Bounds the errors of every w, and of det.
+    slack: L::F32,
+    det_slack: L::F32,
+    /// [`EPS`] (EE (A + |t|)) + tiny bounds the error of e2.q - t det.
+    ee: L::F32,
+    eea: L::F32,
+    tiny: L::F32,
+}
+
+/// 128 * 2^-24, over the 16 of [`RayLanes::bound`].
+const EPS: f32 = 1.0 / (1u64 << 21) as f32;
+
+impl<L: Lanes> Bounded<L> {
+    /// The lanes that are not excluded, as bits.
+    #[inline(always)]
+    pub(crate) fn possible(&self, lanes: L, ray: &RayLanes<L>) -> u32 {
+        let &Self { det, numerator, least, slack, det_slack, ee, eea, tiny } = self;
+        let eps = lanes.splat(EPS);
+        let outside = lanes.less(least + slack, lanes.splat(0.0));
+        let late = lanes.mul_add(eps, lanes.mul_add(ee, lanes.abs(ray.t_max), eea), tiny);
+        let early = lanes.mul_add(eps, lanes.mul_add(ee, lanes.abs(ray.t_min), eea), tiny);
+        let beyond = lanes.less(lanes.mul_add(ray.t_max, det, late), numerator)
+            | lanes.less(numerator + early, ray.t_min * det);
+        let certain = lanes.less(det_slack, det);
+        !lanes.bits(outside | (beyond & certain)) & 0xff
+    }
+
+    /// The lanes for which the bounds leave no doubt: the triangle is hit, and within the interval. Directions
+    /// must not be scaled.
+    ///
+    /// The error of t is that of e2.q and |t| times that of det, over det: at most 3/4 of what is taken here,
+    /// which leaves room for the error of det in the divisor, below 2^-6 of it, and for the roundings of t. What
+    /// is inside by the slack is so by far for `triangle::Rounded`, whose bounds are smaller by 2^29.
+    #[inline(always)]
+    pub(crate) fn certain(&self, lanes: L, ray: &RayLanes<L>) -> Certain<L> {
+        let &Self { det, numerator, least, slack, det_slack, eea, tiny, .. } = self;
+        let inverse = lanes.splat(1.0) / det;
+        let t = numerator * inverse;
+        let late = lanes.mul_add(lanes.splat(EPS), eea, tiny);
+        let error = lanes.mul_add(lanes.abs(t), det_slack * inverse, late * inverse);
+        let (low, high) = (t - error, t + error);
+        // Where nothing overflows or underflows.
+        let (least_t, most) = (lanes.splat(2f32.powi(-80)), lanes.splat(2f32.powi(100)));
+        let inside =
+            lanes.less(slack, least) & lanes.less(lanes.splat(64.0) * det_slack, det) & lanes.less(det, most);
+        let within =
+            lanes.less(lanes.max(ray.t_min, least_t), low) & lanes.less(high, lanes.min(ray.t_max, most));
+        Certain { lanes: lanes.bits(inside & within) & 0xff, low, high }
+    }
 }
 
 /// Lanes that are certainly hit within the interval, as bits, and t between two bounds.
@@ -246,37 +298,6 @@ pub(crate) struct Certain<L: Lanes> {
     /// Both ends open; unspecified in other lanes.
     pub(crate) low: L::F32,
     pub(crate) high: L::F32,
-}
-
-/// The lanes for which the bounds of [`candidates`] leave no doubt: the triangle is hit, and within the interval.
-/// Directions must not be scaled.
-///
-/// The error of t is that of e2.q and |t| times that of det, over det: at most 3/4 of what is taken here, which
-/// leaves room for the error of det in the divisor, below 2^-6 of it, and for the roundings of t. What is inside
-/// by the slack is so by far for `triangle::Rounded`, whose bounds are smaller by 2^29.
-#[inline(always)]
-pub(crate) fn certain<L: Lanes>(lanes: L, ray: &RayLanes<L>, products: &Products<L>) -> Certain<L> {
-    let &Products { det, w: [w1, w2], numerator, a, e } = products;
-    let (abs, sign) = (lanes.abs(det), lanes.sign(det));
-    let (w1, w2, numerator) = (sign * w1, sign * w2, sign * numerator);
-    let eps = lanes.splat(2f32.powi(-21));
-    let de = ray.bound * e;
-    let ee = de * e;
-    let det_slack = eps * ee;
-    let slack = lanes.mul_add(eps, de * a, det_slack);
-    let least = lanes.min(lanes.min(w1, w2), abs - (w1 + w2));
-    let inverse = lanes.splat(1.0) / abs;
-    let t = numerator * inverse;
-    let late = lanes.mul_add(eps, ee * a, lanes.splat(2f32.powi(-97)) * e);
-    let error = lanes.mul_add(lanes.abs(t), det_slack * inverse, late * inverse);
-    let (low, high) = (t - error, t + error);
-    // Where nothing overflows or underflows.
-    let (least_t, most) = (lanes.splat(2f32.powi(-80)), lanes.splat(2f32.powi(100)));
-    let inside =
-        lanes.less(slack, least) & lanes.less(lanes.splat(64.0) * det_slack, abs) & lanes.less(abs, most);
-    let within =
-        lanes.less(lanes.max(ray.t_min, least_t), low) & lanes.less(high, lanes.min(ray.t_max, most));
-    Certain { lanes: lanes.bits(inside & within) & 0xff, low, high }
 }
 
 /// The largest absolute components.
@@ -383,7 +404,8 @@ mod tests {
             }
             let ray_lanes = RayLanes::splat(lanes, &ray, Scale::of(ray.dir));
             let splat = corners.map(|v| v.to_array().map(|x| lanes.splat(x)));
-            let certain = certain(lanes, &ray_lanes, &products(lanes, &ray_lanes, splat));
+            let certain =
+                products(lanes, &ray_lanes, splat).bounded(lanes, &ray_lanes).certain(lanes, &ray_lanes);
             if certain.lanes != 0 {
                 hits += 1;
                 let at = intersect(&ray, corners, EdgeRule::Closed).expect("certain");

@@ -6,7 +6,7 @@
 use glam::Vec3;
 
 use crate::cluster::Cluster;
-use crate::filter::{Certain, Products, RayLanes, Scale, candidates, certain, possible, products};
+use crate::filter::{Bounded, Certain, RayLanes, Scale, candidates, products};
 use crate::lanes::{Lanes, Once, Rounding, Twice, Vec3Lanes, axes, cross, dot, minus};
 use crate::query::EdgeRule;
 use crate::ray::Ray;
@@ -75,21 +75,21 @@ pub(crate) struct Plain;
 pub(crate) struct Fused;
 
 impl Test for Exact {
-    type Found<L: Lanes> = Products<L>;
+    type Found<L: Lanes> = Bounded<L>;
 
     #[inline(always)]
-    fn filter<L: Lanes>(lanes: L, ray: &RayLanes<L>, cluster: &Cluster) -> (u32, Products<L>) {
-        let products = products(lanes, ray, cluster.lanes(lanes));
-        (possible(lanes, ray, &products), products)
+    fn filter<L: Lanes>(lanes: L, ray: &RayLanes<L>, cluster: &Cluster) -> (u32, Bounded<L>) {
+        let bounded = products(lanes, ray, cluster.lanes(lanes)).bounded(lanes, ray);
+        (bounded.possible(lanes, ray), bounded)
     }
 
     #[inline(always)]
-    fn certain<L: Lanes>(lanes: L, ray: &RayLanes<L>, products: &Products<L>) -> Option<Certain<L>> {
-        Some(certain(lanes, ray, products))
+    fn certain<L: Lanes>(lanes: L, ray: &RayLanes<L>, bounded: &Bounded<L>) -> Option<Certain<L>> {
+        Some(bounded.certain(lanes, ray))
     }
 
     #[inline(always)]
-    fn decide<L: Lanes>(_: L, _: &Products<L>, subject: &Subject<'_>) -> Option<Intersection> {
+    fn decide<L: Lanes>(_: L, _: &Bounded<L>, subject: &Subject<'_>) -> Option<Intersection> {
         let &Subject { ray, cluster, lane, rule } = subject;
         clear_hit(ray, cluster.triangle(lane)).or_else(|| unclear(ray, cluster, lane, rule))
     }

@@ -15,7 +15,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::filter::{Products, RayLanes, TINY, possible, size};
+use crate::filter::{Products, RayLanes, TINY, size};
 use crate::lanes::{Doubles, Lanes, Once, Vec3Lanes, WIDTH, cross, dot, minus, splat};
 
 /// A triangle in all lanes.
@@ -53,7 +53,8 @@ impl<L: Lanes> Prepared<L> {
         let det = dot::<Once, L>(lanes, d, self.normal);
         let w = [-dot::<Once, L>(lanes, self.e2, r), dot::<Once, L>(lanes, self.e1, r)];
         let numerator = -dot::<Once, L>(lanes, s, self.normal);
-        possible(lanes, ray, &Products { det, w, numerator, a: size(lanes, s), e: self.size })
+        let products = Products { det, w, numerator, a: size(lanes, s), e: self.size };
+        products.bounded(lanes, ray).possible(lanes, ray)
     }
 }
 

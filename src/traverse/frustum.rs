@@ -52,11 +52,12 @@ impl Frustum {
         // What a ray that passes the grid does not reach: others must not spoil the precision.
         let most = 16.0 * longest;
         for side in 0..2 {
-            let bounds = ends.map(|x| bounds(lanes, group, side, x).map(|u| u.clamp(-most, most)));
+            let (from, to) = (bounds(lanes, group, side, ends[0]), bounds(lanes, group, side, ends[1]));
             for k in 0..2 {
-                let slope = (bounds[1][k] - bounds[0][k]) * inverse;
+                let (from, to) = (from[k].clamp(-most, most), to[k].clamp(-most, most));
+                let slope = (to - from) * inverse;
                 frustum.slope[side][k] = slope;
-                frustum.at[side][k] = bounds[0][k] - slope * ends[0] + if k == 0 { -slack } else { slack };
+                frustum.at[side][k] = from - slope * ends[0] + if k == 0 { -slack } else { slack };
             }
         }
         Some(frustum)

@@ -189,12 +189,10 @@ impl Group {
         let (main, others) = (self.main, self.others);
         let first = packet * WIDTH;
         let out = &mut self.packets[packet];
-        let wide = |x: &[f32; WIDTH]| lanes.widen(lanes.load(x));
         let cells = lanes.splat8(1.0 / grid.cell);
         let near = |axis: usize| lanes.splat8(NEAR * f64::from(grid.dims[axis]));
-        let place = |axis: usize| (wide(&out.origin[axis]) - lanes.splat8(grid.lo[axis])) * cells;
-        let x = place(main);
-        let d = wide(&out.dir[main]);
+        let x = (widened(lanes, &out.origin[main]) - lanes.splat8(grid.lo[main])) * cells;
+        let d = widened(lanes, &out.dir[main]);
         let inverse = lanes.splat8(1.0) / d;
         let speed = d * cells;
         let ahead =
@@ -210,15 +208,16 @@ impl Group {
             & lanes.less(lanes.load(&out.after), lanes.load(&out.t));
         let mut fit = ahead & lanes.bits(valid) & lanes.at_most8(lanes.abs8(x), near(main));
         for side in 0..2 {
-            let u = place(others[side]);
-            let slope = wide(&out.dir[others[side]]) * inverse;
+            let axis = others[side];
+            let u = (widened(lanes, &out.origin[axis]) - lanes.splat8(grid.lo[axis])) * cells;
+            let slope = widened(lanes, &out.dir[axis]) * inverse;
             out.slope[side] = lanes.store(lanes.narrow(slope));
             out.at[side] = lanes.store(lanes.narrow(u - slope * x));
             fit &= lanes.at_most8(lanes.abs8(slope), lanes.splat8(STEEPEST))
-                & lanes.at_most8(lanes.abs8(u), near(others[side]));
+                & lanes.at_most8(lanes.abs8(u), near(axis));
         }
-        let from = lanes.narrow(x + wide(&out.after) * speed);
-        let to = lanes.narrow(reach(lanes, x, wide(&out.t) * speed, self.rises));
+        let from = lanes.narrow(x + widened(lanes, &out.after) * speed);
+        let to = lanes.narrow(reach(lanes, x, widened(lanes, &out.t) * speed, self.rises));
         let (low, high) = if self.rises { (from, to) } else { (to, from) };
         let slack = lanes.splat(self.slack);
         out.span[0] = lanes.store(lanes.max(low - slack, lanes.splat(-1.0)));
@@ -241,11 +240,11 @@ impl Group {
         }
         let factor = lanes.load8(&factor);
         for axis in 0..3 {
-            out.scaled[axis] = lanes.store(lanes.narrow(wide(&out.dir[axis]) * factor));
+            out.scaled[axis] = lanes.store(lanes.narrow(widened(lanes, &out.dir[axis]) * factor));
         }
         let scale = lanes.load8(&out.scale);
-        out.t_min = lanes.store(-above(lanes, lanes.splat8(0.0) - wide(&out.after) * scale));
-        out.t_max = lanes.store(above(lanes, wide(&out.t) * scale));
+        out.t_min = lanes.store(-above(lanes, lanes.splat8(0.0) - widened(lanes, &out.after) * scale));
+        out.t_max = lanes.store(above(lanes, widened(lanes, &out.t) * scale));
         fit == 0xff
     }
 }
@@ -294,6 +293,11 @@ impl Packet {
         }
         self.t_max = lanes.store(above(lanes, t * lanes.load8(&self.scale)));
     }
+}
+
+#[inline(always)]
+fn widened<L: Doubles>(lanes: L, x: &[f32; WIDTH]) -> L::F64x8 {
+    lanes.widen(lanes.load(x))
 }
 
 /// Where a ray ends that goes that way along the main axis, in proportion to a t of which half a unit in the

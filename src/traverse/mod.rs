@@ -129,15 +129,23 @@ fn along<W: Walker, L: Lanes, V: Visit>(
     match Path::clip(lanes, ray, &arena.grid) {
         Clip::Miss => ControlFlow::Continue(()),
         Clip::Path(path) => W::walk(lanes, arena, &path, visit),
-        Clip::TooFar => every_cluster(arena, visit),
+        Clip::TooFar => every_cluster(lanes, arena, visit),
     }
 }
 
 /// Visits all clusters, for a ray that no walk can follow.
 #[cold]
 #[inline(never)]
-fn every_cluster<V: Visit>(arena: &Arena, visit: &mut V) -> ControlFlow<()> {
-    (0..arena.clusters.len() as u32).try_for_each(|index| visit.only(index))
+fn every_cluster<L: Lanes, V: Visit>(lanes: L, arena: &Arena, visit: &mut V) -> ControlFlow<()> {
+    lanes.vectorize(
+        #[inline(always)]
+        || {
+            for index in 0..arena.clusters.len() as u32 {
+                visit.only(index)?;
+            }
+            ControlFlow::Continue(())
+        },
+    )
 }
 
 /// Traces the rays of a group together; false where they don't go alike, and its hits mean nothing.

@@ -1,9 +1,10 @@
 //! Packets: rays and hits as structures of arrays, up to 64 at a time.
 
 use crate::hit::{Hit, HitPacket};
+use crate::query::{Any, Closest};
 use crate::ray::{Ray, RayPacket};
 use crate::scene::Scene;
-use crate::traverse::{self, FEWEST, GROUP, Group};
+use crate::traverse::{self, FEWEST, GROUP, Group, PerRay};
 
 impl Scene {
     /// [`Scene::closest`] of each ray of N packets, traced together where they go alike: a packet of 16 rays
@@ -22,7 +23,7 @@ impl Scene {
     /// ```
     pub fn closest_packet<const N: usize>(&self, packets: &[RayPacket; N]) -> [HitPacket; N] {
         let mut hits = [[Hit::MISS; RayPacket::LEN]; N];
-        self.trace::<false, N>(packets, |packet, lane, hit| hits[packet][lane] = hit);
+        self.trace::<Closest, N>(packets, |packet, lane, hit| hits[packet][lane] = hit);
         hits.map(|hits| HitPacket::new(&hits))
     }
 
@@ -30,16 +31,14 @@ impl Scene {
     /// where there is a hit.
     pub fn occluded_packet<const N: usize>(&self, packets: &[RayPacket; N]) -> [u8; N] {
         let mut occluded = [0; N];
-        self.trace::<true, N>(packets, |packet, lane, hit| {
-            occluded[packet] |= u8::from(hit.is_hit()) << lane;
-        });
+        self.trace::<Any, N>(packets, |packet, lane, found| occluded[packet] |= u8::from(found) << lane);
         occluded
     }
 
-    fn trace<const ANY: bool, const N: usize>(
+    fn trace<Q: PerRay, const N: usize>(
         &self,
         packets: &[RayPacket; N],
-        mut answer: impl FnMut(usize, usize, Hit),
+        mut answer: impl FnMut(usize, usize, Q::Answer),
     ) {
         const { assert!(1 <= N && N * RayPacket::LEN <= GROUP, "one to eight packets") };
         let mut rays = [Ray::new([0.0; 3], [0.0; 3]); GROUP];
@@ -54,31 +53,25 @@ impl Scene {
                 }
             }
         }
-        let mut answer = |i: usize, hit| answer(lanes[i].0, lanes[i].1, hit);
-        if self.trace_together::<ANY>(&rays[..len], &mut answer) {
-            return;
+        let mut answers = [Q::of(Hit::MISS); GROUP];
+        let (rays, answers) = (&rays[..len], &mut answers[..len]);
+        if !self.trace_together::<Q>(rays, answers) {
+            self.each_ray::<Q>(rays, answers);
         }
-        for (i, ray) in rays[..len].iter().enumerate() {
-            let hit = if ANY {
-                Hit { prim: if self.occluded(ray) { 0 } else { u32::MAX }, ..Hit::MISS }
-            } else {
-                self.closest(ray)
-            };
-            answer(i, hit);
-        }
+        answers.iter().zip(lanes).for_each(|(&found, (packet, lane))| answer(packet, lane, found));
     }
 
     /// False where the rays don't go alike, and nothing is answered. Groups are large: none is made for rays apart,
     /// and none is moved.
-    fn trace_together<const ANY: bool>(&self, rays: &[Ray], mut answer: impl FnMut(usize, Hit)) -> bool {
+    fn trace_together<Q: PerRay>(&self, rays: &[Ray], answers: &mut [Q::Answer]) -> bool {
         if rays.len() < FEWEST || !point_alike(rays) {
             return false;
         }
         let mut group = Group::new();
         group.load(rays.len(), |i| rays[i]);
-        let together = traverse::group::<ANY>(self.isa, &self.arena, &mut group);
+        let together = traverse::group::<Q>(self.isa, &self.arena, &mut group);
         if together {
-            (0..rays.len()).for_each(|i| answer(i, group.hit(i)));
+            answers.iter_mut().enumerate().for_each(|(i, answer)| *answer = Q::of(group.hit(i)));
         }
         together
     }

@@ -12,7 +12,7 @@ use crate::lanes::Isa;
 use crate::mesh::TriMesh;
 use crate::query::{All, Any, Closest, Query};
 use crate::ray::Ray;
-use crate::traverse::{self, Visit};
+use crate::traverse::{self, PerRay, Visit};
 use crate::validate::{self, Statistics, Violation};
 
 /// Triangles in a voxel structure, ready for queries.
@@ -131,6 +131,11 @@ impl Scene {
 
     fn run<K: Test, Q: Query>(&self, ray: &Ray, query: &mut Q) {
         traverse::query::<K, Q>(self.isa, &self.arena, self.walk, ray, query);
+    }
+
+    /// Answers a query for each ray, one after the other.
+    pub(crate) fn each_ray<Q: PerRay>(&self, rays: &[Ray], answers: &mut [Q::Answer]) {
+        traverse::batch::<Q>(self.isa, &self.arena, self.walk, rays, answers);
     }
 
     /// Visits the clusters near a ray voxel by voxel, without testing them: for intersection tests of

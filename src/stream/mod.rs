@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use crate::hit::Hit;
+use crate::query::{Any, Closest};
 use crate::ray::Ray;
 use crate::scene::Scene;
 
@@ -57,9 +58,9 @@ impl Scene {
     /// Where the slices differ in length.
     pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Hit]) {
         assert_eq!(rays.len(), hits.len(), "one hit a ray");
-        rays.par_chunks(CHUNK).zip(hits.par_chunks_mut(CHUNK)).for_each(|(rays, hits)| {
-            rays.iter().zip(hits).for_each(|(ray, hit)| *hit = self.closest(ray));
-        });
+        rays.par_chunks(CHUNK)
+            .zip(hits.par_chunks_mut(CHUNK))
+            .for_each(|(rays, hits)| self.each_ray::<Closest>(rays, hits));
     }
 
     /// [`Scene::occluded`] of each ray.
@@ -68,9 +69,9 @@ impl Scene {
     /// Where the slices differ in length.
     pub fn occluded_batch(&self, rays: &[Ray], occluded: &mut [bool]) {
         assert_eq!(rays.len(), occluded.len(), "one answer a ray");
-        rays.par_chunks(CHUNK).zip(occluded.par_chunks_mut(CHUNK)).for_each(|(rays, occluded)| {
-            rays.iter().zip(occluded).for_each(|(ray, found)| *found = self.occluded(ray));
-        });
+        rays.par_chunks(CHUNK)
+            .zip(occluded.par_chunks_mut(CHUNK))
+            .for_each(|(rays, occluded)| self.each_ray::<Any>(rays, occluded));
     }
 
     /// [`Scene::all`] of each ray, complete.

@@ -6,9 +6,10 @@ use super::gather::Gather;
 use crate::arena::Form;
 use crate::hit::Hit;
 use crate::lanes::{WIDTH, dispatch};
+use crate::query::{Any, Closest};
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::traverse::{self, FEWEST, GROUP, Group};
+use crate::traverse::{self, FEWEST, GROUP, Group, PerRay};
 
 /// Rays a task.
 const CHUNK: usize = 4096;
@@ -30,7 +31,7 @@ impl Scene {
         assert_eq!(rays.len(), hits.len(), "one hit a ray");
         rays.par_chunks(CHUNK)
             .zip(hits.par_chunks_mut(CHUNK))
-            .for_each(|(rays, hits)| stream(self, rays, Closest(hits)));
+            .for_each(|(rays, hits)| stream::<Closest>(self, rays, hits));
     }
 
     /// [`Scene::occluded`] of each ray, as [`Scene::closest_stream`] does it.
@@ -41,42 +42,7 @@ impl Scene {
         assert_eq!(rays.len(), occluded.len(), "one answer a ray");
         rays.par_chunks(CHUNK)
             .zip(occluded.par_chunks_mut(CHUNK))
-            .for_each(|(rays, occluded)| stream(self, rays, Occluded(occluded)));
-    }
-}
-
-/// Where the answers of a chunk go.
-trait Answers {
-    /// Whether any hit will do.
-    const ANY: bool;
-    fn single(&mut self, scene: &Scene, ray: &Ray, at: usize);
-    fn grouped(&mut self, hit: Hit, at: usize);
-}
-
-struct Closest<'a>(&'a mut [Hit]);
-struct Occluded<'a>(&'a mut [bool]);
-
-impl Answers for Closest<'_> {
-    const ANY: bool = false;
-    #[inline(always)]
-    fn single(&mut self, scene: &Scene, ray: &Ray, at: usize) {
-        self.0[at] = scene.closest(ray);
-    }
-    #[inline(always)]
-    fn grouped(&mut self, hit: Hit, at: usize) {
-        self.0[at] = hit;
-    }
-}
-
-impl Answers for Occluded<'_> {
-    const ANY: bool = true;
-    #[inline(always)]
-    fn single(&mut self, scene: &Scene, ray: &Ray, at: usize) {
-        self.0[at] = scene.occluded(ray);
-    }
-    #[inline(always)]
-    fn grouped(&mut self, hit: Hit, at: usize) {
-        self.0[at] = hit.is_hit();
+            .for_each(|(rays, occluded)| stream::<Any>(self, rays, occluded));
     }
 }
 
@@ -92,17 +58,17 @@ enum Mode {
 }
 
 /// A chunk of a stream on its way.
-struct Stream<'a, A> {
+struct Stream<'a, Q: PerRay> {
     scene: &'a Scene,
     rays: &'a [Ray],
-    answers: A,
+    answers: &'a mut [Q::Answer],
     group: Group,
     gather: Gather,
     /// Rays gathered in this block that were not to be traced together.
     refused: usize,
 }
 
-impl<A: Answers> Stream<'_, A> {
+impl<Q: PerRay> Stream<'_, Q> {
     /// Answers all rays.
     fn run(&mut self) {
         let mut mode =
@@ -123,7 +89,7 @@ impl<A: Answers> Stream<'_, A> {
                     false => Mode::Single(PAUSE),
                 },
                 Mode::Single(blocks) => {
-                    (at..end).for_each(|i| self.answers.single(self.scene, &self.rays[i], i));
+                    self.scene.each_ray::<Q>(&self.rays[at..end], &mut self.answers[at..end]);
                     if blocks == 0 { Mode::Runs } else { Mode::Single(blocks - 1) }
                 }
             };
@@ -136,9 +102,9 @@ impl<A: Answers> Stream<'_, A> {
     fn run_of_rays(&mut self, at: usize, end: usize) -> bool {
         let rays = &self.rays[at..end];
         let together =
-            rays.len() >= FEWEST && trace::<A>(self.scene, &mut self.group, rays.len(), |i| rays[i]);
+            rays.len() >= FEWEST && trace::<Q>(self.scene, &mut self.group, rays.len(), |i| rays[i]);
         if together {
-            (at..end).for_each(|i| self.answers.grouped(self.group.hit(i - at), i));
+            (at..end).for_each(|i| self.answers[i] = Q::of(self.group.hit(i - at)));
         }
         together
     }
@@ -174,34 +140,30 @@ impl<A: Answers> Stream<'_, A> {
         let len = std::mem::take(&mut self.gather.len[slot]);
         let members = &self.gather.rays[slot][..len];
         let ray = |i: usize| self.rays[members[i] as usize];
-        let together = len >= FEWEST && trace::<A>(self.scene, &mut self.group, len, ray);
+        let together = len >= FEWEST && trace::<Q>(self.scene, &mut self.group, len, ray);
         if len >= FEWEST && !together {
             self.refused += len;
         }
-        for (i, &at) in members.iter().enumerate() {
-            let at = at as usize;
-            if together {
-                self.answers.grouped(self.group.hit(i), at);
-            } else {
-                self.answers.single(self.scene, &self.rays[at], at);
-            }
+        let mut answers = [Q::of(Hit::MISS); GROUP];
+        if together {
+            (0..len).for_each(|i| answers[i] = Q::of(self.group.hit(i)));
+        } else {
+            let mut rays = [self.rays[0]; GROUP];
+            (0..len).for_each(|i| rays[i] = ray(i));
+            self.scene.each_ray::<Q>(&rays[..len], &mut answers[..len]);
         }
+        (0..len).for_each(|i| self.answers[members[i] as usize] = answers[i]);
     }
 }
 
 /// Traces rays together; false where they don't go alike, and nothing is answered.
-fn trace<A: Answers>(scene: &Scene, group: &mut Group, len: usize, ray: impl Fn(usize) -> Ray) -> bool {
+fn trace<Q: PerRay>(scene: &Scene, group: &mut Group, len: usize, ray: impl Fn(usize) -> Ray) -> bool {
     group.load(len, ray);
-    let (isa, arena) = (scene.isa, &scene.arena);
-    if A::ANY {
-        traverse::group::<true>(isa, arena, group)
-    } else {
-        traverse::group::<false>(isa, arena, group)
-    }
+    traverse::group::<Q>(scene.isa, &scene.arena, group)
 }
 
-fn stream<A: Answers>(scene: &Scene, rays: &[Ray], answers: A) {
+fn stream<Q: PerRay>(scene: &Scene, rays: &[Ray], answers: &mut [Q::Answer]) {
     let grid = &scene.arena.grid;
     let gather = Gather::new(grid.cell * f64::from(grid.longest()));
-    Stream { scene, rays, answers, group: Group::new(), gather, refused: 0 }.run();
+    Stream::<Q> { scene, rays, answers, group: Group::new(), gather, refused: 0 }.run();
 }

@@ -19,6 +19,8 @@
 //! super::frustum) for groups against voxels, [`Bundle`] and [`Prepared`] for triangles. Decisions are those
 //! of single rays.
 
+use std::marker::PhantomData;
+
 use super::frustum::{Frustum, span};
 use super::group::{Group, SCALED};
 use crate::arena::{Arena, BoxGroup, Voxel};
@@ -27,7 +29,7 @@ use crate::cluster::Cluster;
 use crate::filter::{RayLanes, candidates};
 use crate::lanes::{Doubles, WIDTH};
 use crate::prepared::{Hits, Prepared, intersect8};
-use crate::query::EdgeRule;
+use crate::query::{EdgeRule, Query, Wanted};
 use crate::ray::Ray;
 use crate::triangle::intersect;
 
@@ -63,7 +65,7 @@ const WIDEST: f32 = 0.2;
 const EFFORT: u32 = 8;
 
 /// Traces a group.
-pub(crate) struct Coherent<'a, L, const ANY: bool> {
+pub(crate) struct Coherent<'a, L, Q> {
     lanes: L,
     arena: &'a Arena,
     group: &'a mut Group,
@@ -73,9 +75,10 @@ pub(crate) struct Coherent<'a, L, const ANY: bool> {
     changed: bool,
     /// What of the [`EFFORT`] is left.
     effort: u32,
+    query: PhantomData<Q>,
 }
 
-impl<'a, L: Doubles, const ANY: bool> Coherent<'a, L, ANY> {
+impl<'a, L: Doubles, Q: Query> Coherent<'a, L, Q> {
     /// Traces a group; false where it spreads too far, and its hits mean nothing.
     #[inline(always)]
     pub(crate) fn run(lanes: L, arena: &'a Arena, group: &'a mut Group) -> bool {
@@ -87,7 +90,17 @@ impl<'a, L: Doubles, const ANY: bool> Coherent<'a, L, ANY> {
         let bundle = frustum.bundle(&arena.grid);
         let effort = EFFORT * group.len as u32;
         let mailbox = Mailbox { recent: [(u32::MAX, 0); 8], next: 0 };
-        let mut walk = Self { lanes, arena, group, mailbox, frustum, bundle, changed: false, effort };
+        let mut walk = Self {
+            lanes,
+            arena,
+            group,
+            mailbox,
+            frustum,
+            bundle,
+            changed: false,
+            effort,
+            query: PhantomData,
+        };
         walk.slices();
         walk.effort > 0
     }
@@ -368,7 +381,7 @@ impl<'a, L: Doubles, const ANY: bool> Coherent<'a, L, ANY> {
         let packet = &mut self.group.packets[i];
         if packet.take(hits, found, prim) {
             self.changed = true;
-            if ANY { packet.finish() } else { packet.shorten(self.lanes, rises, slack) }
+            if Q::WANTED == Wanted::Any { packet.finish() } else { packet.shorten(self.lanes, rises, slack) }
         }
     }
 }

@@ -14,8 +14,8 @@ use std::ops::ControlFlow;
 
 use super::brick::{BrickPath, mirror, mirror_index};
 use super::{Visit, Walker};
-use crate::arena::{Arena, BRICK_LEVELS, BoxGroup, Voxel, VoxelWord};
-use crate::dda::{Clock, Dda, Limit, Path};
+use crate::arena::{Arena, BRICK_LEVELS, BoxGroup, Grid, Voxel, VoxelWord};
+use crate::dda::{Clock, Dda, Limit, Path, Quad, Steps};
 use crate::filter::above;
 use crate::lanes::{Lanes, Vec3Lanes, axes};
 
@@ -25,8 +25,76 @@ pub(crate) struct Hybrid<const BRICKS: bool>;
 impl<const BRICKS: bool> Walker for Hybrid<BRICKS> {
     #[inline(always)]
     fn walk<L: Lanes, V: Visit>(lanes: L, arena: &Arena, path: &Path<L>, visit: &mut V) -> ControlFlow<()> {
-        let (mut dda, steps) = Dda::new(lanes, path, &arena.grid);
-        let mut cells = Cells::new(lanes, arena, path, steps.end, visit);
+        Self::walk_from(lanes, arena, Start::of(lanes, path, &arena.grid), visit)
+    }
+}
+
+/// Where a walk starts, and what it adds from there.
+pub(super) struct Start<L: Lanes> {
+    dda: Dda,
+    steps: Steps,
+    octant: u32,
+    clock: Clock,
+    /// Time a cell, with the sign of the direction.
+    slope: Vec3Lanes<L>,
+    /// Minus the time at which the path passes the grid's lower corner.
+    delay: Vec3Lanes<L>,
+}
+
+impl<L: Lanes> Start<L> {
+    #[inline(always)]
+    fn of(lanes: L, path: &Path<L>, grid: &Grid) -> Self {
+        let (dda, steps) = Dda::new(lanes, path, grid);
+        let slope = lanes.select4(path.mirrored, -path.width, path.width);
+        let dims = lanes.load4(&grid.axes.dims);
+        let delay = -slope * lanes.select4(path.mirrored, dims - path.origin, path.origin);
+        let (octant, clock) = (path.octant, path.clock);
+        let (slope, delay) = (rounded(lanes, slope), rounded(lanes, delay));
+        Self { dda, steps, octant, clock, slope, delay }
+    }
+
+    /// That of one of four rays.
+    #[inline(always)]
+    pub(super) fn of_quad(lanes: L, quad: &Quad, ray: usize) -> Self {
+        let (dda, steps) = quad.dda(ray);
+        Self {
+            dda,
+            steps,
+            octant: quad.octant(ray),
+            clock: quad.clock(ray),
+            slope: axes(
+                #[inline(always)]
+                |axis| lanes.splat(quad.slope(axis, ray)),
+            ),
+            delay: axes(
+                #[inline(always)]
+                |axis| lanes.splat(quad.delay(axis, ray)),
+            ),
+        }
+    }
+}
+
+/// Three of four values, each in all lanes.
+#[inline(always)]
+fn rounded<L: Lanes>(lanes: L, x: L::F64) -> Vec3Lanes<L> {
+    let x = lanes.store4(x);
+    axes(
+        #[inline(always)]
+        |axis| lanes.splat(x[axis] as f32),
+    )
+}
+
+impl<const BRICKS: bool> Hybrid<BRICKS> {
+    /// Visits the voxels from there on.
+    #[inline(always)]
+    pub(super) fn walk_from<L: Lanes, V: Visit>(
+        lanes: L,
+        arena: &Arena,
+        start: Start<L>,
+        visit: &mut V,
+    ) -> ControlFlow<()> {
+        let (mut dda, steps) = (start.dda, start.steps);
+        let mut cells = Cells::new(lanes, arena, &start, visit);
         loop {
             // A loop of its own for empty voxels, which need few registers.
             let word = loop {
@@ -90,21 +158,10 @@ struct Cells<'a, L: Lanes, V> {
 
 impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
     #[inline(always)]
-    fn new(lanes: L, arena: &'a Arena, path: &Path<L>, end: f64, visit: &'a mut V) -> Self {
-        let slope = lanes.select4(path.mirrored, -path.width, path.width);
-        let dims = lanes.load4(&arena.grid.axes.dims);
-        let delay = -slope * lanes.select4(path.mirrored, dims - path.origin, path.origin);
-        let splat = |v: L::F64| {
-            let v = lanes.store4(v);
-            axes(
-                #[inline(always)]
-                |axis| lanes.splat(v[axis] as f32),
-            )
-        };
-        let (octant, clock) = (path.octant, path.clock);
-        let limit = Limit::new(clock, end, visit.t_max());
-        let (slope, delay) = (splat(slope), splat(delay));
-        let (last, end) = (above(limit.time), above(end));
+    fn new(lanes: L, arena: &'a Arena, start: &Start<L>, visit: &'a mut V) -> Self {
+        let &Start { octant, clock, slope, delay, .. } = start;
+        let limit = Limit::new(clock, start.steps.end, visit.t_max());
+        let (last, end) = (above(limit.time), above(start.steps.end));
         Self { lanes, arena, octant, clock, visit, limit, last, end, slope, delay }
     }
 

@@ -3,6 +3,7 @@
 //! Three things are kept apart: the walks of this module move through space, a [`Visit`] tests what
 //! they find ([`leaf`]), and a [`crate::Query`] keeps hits. Each structure has one walk for all of it.
 
+mod batch;
 mod brick;
 mod brute;
 mod coherent;
@@ -23,6 +24,7 @@ use crate::kernel::Test;
 use crate::lanes::{Isa, Lanes, dispatch};
 use crate::query::Query;
 use crate::ray::Ray;
+pub(crate) use batch::{PerRay, batch};
 use brute::Brute;
 use coherent::Coherent;
 pub(crate) use group::{FEWEST, GROUP, Group};
@@ -150,11 +152,11 @@ fn every_cluster<L: Lanes, V: Visit>(lanes: L, arena: &Arena, visit: &mut V) -> 
 
 /// Traces the rays of a group together; false where they don't go alike, and its hits mean nothing.
 #[inline(never)]
-pub(crate) fn group<const ANY: bool>(isa: Isa, arena: &Arena, group: &mut Group) -> bool {
+pub(crate) fn group<Q: PerRay>(isa: Isa, arena: &Arena, group: &mut Group) -> bool {
     if arena.form != Form::Bricks {
         return false;
     }
     dispatch!(isa, lanes => {
-        group.prepare(lanes, &arena.grid) && Coherent::<_, ANY>::run(lanes, arena, group)
+        group.prepare(lanes, &arena.grid) && Coherent::<_, Q>::run(lanes, arena, group)
     })
 }

@@ -14,11 +14,14 @@
 //! the direction below 2^-60 of the largest is raised to that, which moves the ray by less than 2^-47 S.
 //! Voxels are built larger than that, see [`LIST_MARGIN`] and "Error analysis" in ARCHITECTURE.md.
 
+mod quad;
+
 use crate::arena::Grid;
 use crate::descent::first_exit;
 use crate::exact::{two_product, two_sum};
 use crate::lanes::{Lanes, axes};
 use crate::ray::Ray;
+pub(crate) use quad::Quad;
 
 /// The margin of the voxels of a structure that is walked in f64, relative to the size of the scene.
 pub(crate) const LIST_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
@@ -54,9 +57,6 @@ impl<L: Lanes> Path<L> {
     /// Clips a ray to the scene's box in the grid, or to the grid; one that is not valid misses.
     #[inline(always)]
     pub(crate) fn clip(lanes: L, ray: &Ray, grid: &Grid) -> Clip<L> {
-        // Origins so near, in sizes of the grid, that rounding stays within what the grid is larger than
-        // the scene.
-        const NEAR: f64 = 256.0;
         let ([ox, oy, oz], [dx, dy, dz]) = (ray.origin.to_array(), ray.dir.to_array());
         let steepest = f64::from(ray.dir.abs().max_element());
         // In the fourth lane, whose lower plane is passed at t_min.
@@ -173,7 +173,7 @@ impl FarPath {
 }
 
 /// Turns t into time.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clock {
     /// Time a unit of t.
     speed: f64,
@@ -182,12 +182,14 @@ pub(crate) struct Clock {
 }
 
 impl Clock {
+    /// Bounds the rounding of the time of t = 0.
+    const SLACK: f64 = 1.0 / (1u64 << 50) as f64;
+
     /// Of a path that starts `delay` after the time of t = `start`.
     #[inline(always)]
     fn new(speed: f64, start: f64, delay: f64) -> Self {
-        const SLACK: f64 = 1.0 / (1u64 << 50) as f64;
         let back = start * speed;
-        Self { speed, zero: (back.abs() + delay) * SLACK + LEAST * speed - (back + delay) }
+        Self { speed, zero: (back.abs() + delay) * Self::SLACK + LEAST * speed - (back + delay) }
     }
 
     /// A time no hit comes after whose distance rounds to `t` or less.
@@ -239,6 +241,12 @@ impl Limit {
     }
 }
 
+/// Origins so near, in sizes of the grid, that rounding stays within what the grid is larger than the scene.
+const NEAR: f64 = 256.0;
+
+/// Rounding moves a plane that is left last by less, and the scene is inside the grid by more.
+const EARLY: f64 = 1.0 - 1.0 / (1u64 << 40) as f64;
+
 /// The least speed along an axis, relative to the largest.
 const LEAST_SPEED: f64 = 1.0 / (1u64 << 60) as f64;
 
@@ -287,7 +295,7 @@ pub(crate) struct Dda {
 }
 
 /// What steps of a [`Dda`] add.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Steps {
     /// The time from plane to plane along each axis.
     pub(crate) width: [f64; 3],
@@ -302,8 +310,6 @@ impl Dda {
     /// The voxel of the grid in which the path starts, and the steps from there.
     #[inline(always)]
     pub(crate) fn new<L: Lanes>(lanes: L, path: &Path<L>, grid: &Grid) -> (Self, Steps) {
-        // Rounding moves a plane that is left last by less, and the scene is inside the grid by more.
-        const EARLY: f64 = 1.0 - 1.0 / (1u64 << 40) as f64;
         let (zero, half, one) = (lanes.splat4(0.0), lanes.splat4(0.5), lanes.splat4(1.0));
         let strides = lanes.load4(&grid.axes.strides);
         let last = lanes.load4(&grid.axes.dims) - one;

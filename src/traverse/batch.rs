@@ -1,0 +1,134 @@
+//! Rays one by one, set up four at a time.
+
+use super::hybrid::{Hybrid, Start};
+use super::leaf::LeafTest;
+use crate::arena::{Arena, Form};
+use crate::dda::Quad;
+use crate::descent::Walk;
+use crate::hit::Hit;
+use crate::kernel::Exact;
+use crate::lanes::{Isa, Lanes, dispatch};
+use crate::query::{Any, Closest, Query};
+use crate::ray::Ray;
+
+/// A query that is made of each ray, and its answer.
+pub(crate) trait PerRay: Query {
+    type Answer: Copy + Send;
+    fn up_to(t_max: f32) -> Self;
+    fn answer(&self) -> Self::Answer;
+    /// The answer where the closest hit is known, or one of them if any will do.
+    fn of(hit: Hit) -> Self::Answer;
+}
+
+impl PerRay for Closest {
+    type Answer = Hit;
+    #[inline(always)]
+    fn up_to(t_max: f32) -> Self {
+        Self::new(t_max)
+    }
+    #[inline(always)]
+    fn answer(&self) -> Hit {
+        self.hit()
+    }
+    #[inline(always)]
+    fn of(hit: Hit) -> Hit {
+        hit
+    }
+}
+
+impl PerRay for Any {
+    type Answer = bool;
+    #[inline(always)]
+    fn up_to(t_max: f32) -> Self {
+        Self::new(t_max)
+    }
+    #[inline(always)]
+    fn answer(&self) -> bool {
+        self.found()
+    }
+    #[inline(always)]
+    fn of(hit: Hit) -> bool {
+        hit.is_hit()
+    }
+}
+
+/// Answers the query for each ray.
+#[inline(never)]
+pub(crate) fn batch<Q: PerRay>(isa: Isa, arena: &Arena, walk: Walk, rays: &[Ray], answers: &mut [Q::Answer]) {
+    let batch = Batch { isa, arena, walk };
+    if arena.form != Form::Bricks {
+        rays.iter().zip(answers).for_each(|(ray, answer)| *answer = batch.alone::<Q>(ray));
+    } else if arena.bricks.is_empty() && walk == Walk::Special {
+        dispatch!(isa, lanes => batch.run::<false, _, Q>(lanes, rays, answers));
+    } else {
+        dispatch!(isa, lanes => batch.run::<true, _, Q>(lanes, rays, answers));
+    }
+}
+
+struct Batch<'a> {
+    isa: Isa,
+    arena: &'a Arena,
+    walk: Walk,
+}
+
+impl Batch<'_> {
+    #[inline(always)]
+    fn run<const BRICKS: bool, L: Lanes, Q: PerRay>(
+        &self,
+        lanes: L,
+        rays: &[Ray],
+        answers: &mut [Q::Answer],
+    ) {
+        for (rays, answers) in rays.chunks(4).zip(answers.chunks_mut(4)) {
+            let quad = match rays.first_chunk() {
+                Some(four) => Quad::new(lanes, four, &self.arena.grid),
+                None => {
+                    let mut four = [rays[0]; 4];
+                    four[..rays.len()].copy_from_slice(rays);
+                    Quad::new(lanes, &four, &self.arena.grid)
+                }
+            };
+            for (i, (ray, answer)) in rays.iter().zip(answers).enumerate() {
+                *answer = if quad.alone >> i & 1 != 0 {
+                    self.alone::<Q>(ray)
+                } else if quad.entering >> i & 1 != 0 {
+                    self.walk::<BRICKS, L, Q>(lanes, &quad, i, ray)
+                } else {
+                    Q::up_to(ray.t_max).answer()
+                };
+            }
+        }
+    }
+
+    /// In a function of its own, so that registers are found for the walk and not for what is around it.
+    #[inline(never)]
+    fn walk<const BRICKS: bool, L: Lanes, Q: PerRay>(
+        &self,
+        lanes: L,
+        quad: &Quad,
+        i: usize,
+        ray: &Ray,
+    ) -> Q::Answer {
+        lanes.vectorize(
+            #[inline(always)]
+            || {
+                let mut query = Q::up_to(ray.t_max);
+                let mut leaves = LeafTest::<_, Exact, Q>::new(lanes, self.arena, ray, &mut query);
+                let start = Start::of_quad(lanes, quad, i);
+                if Hybrid::<BRICKS>::walk_from(lanes, self.arena, start, &mut leaves).is_continue() {
+                    leaves.finish();
+                }
+                query.answer()
+            },
+        )
+    }
+
+    /// A ray that is set up by itself.
+    #[cold]
+    #[inline(never)]
+    fn alone<Q: PerRay>(&self, ray: &Ray) -> Q::Answer {
+        let mut query = Q::up_to(ray.t_max);
+        super::query::<Exact, Q>(self.isa, self.arena, self.walk, ray, &mut query);
+        query.answer()
+    }
+}

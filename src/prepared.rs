@@ -13,10 +13,11 @@
 //! for det, w1 and w2 and 48 u for e2.q, relative to the products of the largest components. So its bounds
 //! hold here too.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
-use crate::filter::{Products, RayLanes, TINY, size};
+use crate::filter::{Bounded, Products, RayLanes, TINY, size};
 use crate::lanes::{Doubles, Lanes, Once, Vec3Lanes, WIDTH, cross, dot, minus, splat};
+use crate::triangle::{Intersection, SHARE};
 
 /// A triangle in all lanes.
 #[derive(Clone, Copy)]
@@ -44,9 +45,9 @@ impl<L: Lanes> Prepared<L> {
         }
     }
 
-    /// The lanes in which the ray may meet the triangle within its interval, as bits.
+    /// What the rays are judged by.
     #[inline(always)]
-    pub(crate) fn candidates(&self, lanes: L, ray: &RayLanes<L>) -> u32 {
+    pub(crate) fn bounded(&self, lanes: L, ray: &RayLanes<L>) -> Bounded<L> {
         let s = minus::<L>(ray.origin, self.corner);
         let d = ray.dir;
         let r = cross::<Once, L>(lanes, s, d);
@@ -54,73 +55,64 @@ impl<L: Lanes> Prepared<L> {
         let w = [-dot::<Once, L>(lanes, self.e2, r), dot::<Once, L>(lanes, self.e1, r)];
         let numerator = -dot::<Once, L>(lanes, s, self.normal);
         let products = Products { det, w, numerator, a: size(lanes, s), e: self.size };
-        products.bounded(lanes, ray).possible(lanes, ray)
+        products.bounded(lanes, ray)
     }
 }
 
-/// Where eight rays meet a triangle, for the lanes in `clear`.
+/// Where eight rays meet a triangle each, for the lanes in `clear`.
 pub(crate) struct Hits {
     pub(crate) clear: u32,
-    pub(crate) t: [f32; WIDTH],
-    pub(crate) u: [f32; WIDTH],
-    pub(crate) v: [f32; WIDTH],
+    t: [f32; WIDTH],
+    u: [f32; WIDTH],
+    v: [f32; WIDTH],
 }
 
-/// What [`intersect`](crate::triangle::intersect) decides for eight rays, bit for bit, in the lanes in which
-/// f64 leaves no doubt. Directions must not be scaled.
+impl Hits {
+    #[inline(always)]
+    pub(crate) fn at(&self, lane: usize) -> Intersection {
+        Intersection { t: self.t[lane], u: self.u[lane], v: self.v[lane] }
+    }
+}
+
+/// Where eight rays meet a triangle each, given by corner and axis, as [`known_hit`](crate::triangle::known_hit)
+/// decides it for one: that it is met is certain, with t between two bounds that far apart. The lanes in which f64
+/// leaves no doubt about t are clear. Directions must not be scaled.
 #[inline(always)]
-pub(crate) fn intersect8<L: Doubles>(
+pub(crate) fn known8<L: Doubles>(
     lanes: L,
     origin: &[[f32; WIDTH]; 3],
     dir: &[[f32; WIDTH]; 3],
-    corners: [Vec3; 3],
+    corners: &[[[f32; WIDTH]; 3]; 3],
+    width: &[f32; WIDTH],
 ) -> Hits {
-    const UNIT: f64 = 64.0 / (1u64 << 53) as f64;
-    const PRECISE: f64 = 1.0 / (1u64 << 26) as f64;
-    let [v0, v1, v2] = corners.map(Vec3::as_dvec3);
-    let (e1, e2) = (v1 - v0, v2 - v0);
-    let (size1, size2) = (e1.abs().max_element(), e2.abs().max_element());
     let (o, d) = (widened(lanes, origin), widened(lanes, dir));
-    let (corner, e1, e2) = (all8(lanes, v0), all8(lanes, e1), all8(lanes, e2));
-    let s = [o[0] - corner[0], o[1] - corner[1], o[2] - corner[2]];
+    let v0 = widened(lanes, &corners[0]);
+    let s = minus8::<L>(&o, &v0);
+    let e1 = minus8::<L>(&widened(lanes, &corners[1]), &v0);
+    let e2 = minus8::<L>(&widened(lanes, &corners[2]), &v0);
     let (p, q) = (cross8::<L>(&e2, &d), cross8::<L>(&e1, &s));
-    let (det, w1, w2, numerator) =
-        (dot8::<L>(&e1, &p), dot8::<L>(&s, &p), dot8::<L>(&d, &q), dot8::<L>(&e2, &q));
-    let (size1, size2) = (lanes.splat8(size1), lanes.splat8(size2));
-    let (a, d) = (lanes.splat8(UNIT) * size8(lanes, &s), size8(lanes, &d));
-    let (b1, b2) = (a * d * size2, a * d * size1);
-    let det_bound = lanes.splat8(UNIT) * d * size1 * size2;
-    let sign = lanes.sign8(det);
-    let (w1, w2, det, numerator) = (sign * w1, sign * w2, sign * det, sign * numerator);
-    let w0 = det - w1 - w2;
-    let bound = lanes.splat8(2.0) * (det_bound + b1 + b2);
-    let numerator_bound = a * size1 * size2;
-
-    let least = lanes.min8(lanes.min8(w0, w1), w2);
-    let inside = lanes.less8(bound, least) & lanes.at_most8(bound, det * lanes.splat8(PRECISE));
-
-    let inverse = lanes.splat8(1.0) / det;
-    let t = numerator * inverse;
-    let error =
-        lanes.abs8(t) * (det_bound * inverse + lanes.splat8(4.0 * f64::EPSILON)) + numerator_bound * inverse;
+    let inverse = lanes.splat8(1.0) / dot8::<L>(&e1, &p);
+    let t = dot8::<L>(&e2, &q) * inverse;
+    let error = lanes.widen(lanes.load(width)) * lanes.splat8(SHARE)
+        + lanes.abs8(t) * lanes.splat8(4.0 * f64::EPSILON);
     let (low, high) = (lanes.narrow(t - error), lanes.narrow(t + error));
-    let same = lanes.bits(lanes.at_most(high, low) & lanes.less(lanes.abs(low), lanes.splat(f32::INFINITY)));
+    let same = lanes.at_most(high, low) & lanes.less(lanes.abs(low), lanes.splat(f32::INFINITY));
     Hits {
-        clear: inside & same,
+        clear: lanes.bits(same) & 0xff,
         t: lanes.store(low + lanes.splat(0.0)),
-        u: lanes.store(lanes.narrow(w1 * inverse)),
-        v: lanes.store(lanes.narrow(w2 * inverse)),
+        u: lanes.store(lanes.narrow(dot8::<L>(&s, &p) * inverse)),
+        v: lanes.store(lanes.narrow(dot8::<L>(&d, &q) * inverse)),
     }
-}
-
-#[inline(always)]
-fn all8<L: Doubles>(lanes: L, v: DVec3) -> [L::F64x8; 3] {
-    [lanes.splat8(v.x), lanes.splat8(v.y), lanes.splat8(v.z)]
 }
 
 #[inline(always)]
 fn widened<L: Doubles>(lanes: L, v: &[[f32; WIDTH]; 3]) -> [L::F64x8; 3] {
     [lanes.widen(lanes.load(&v[0])), lanes.widen(lanes.load(&v[1])), lanes.widen(lanes.load(&v[2]))]
+}
+
+#[inline(always)]
+fn minus8<L: Doubles>(a: &[L::F64x8; 3], b: &[L::F64x8; 3]) -> [L::F64x8; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// In the order of operations of `DVec3::cross`.
@@ -135,14 +127,12 @@ fn dot8<L: Doubles>(a: &[L::F64x8; 3], b: &[L::F64x8; 3]) -> L::F64x8 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-#[inline(always)]
-fn size8<L: Doubles>(lanes: L, a: &[L::F64x8; 3]) -> L::F64x8 {
-    lanes.max8(lanes.max8(lanes.abs8(a[0]), lanes.abs8(a[1])), lanes.abs8(a[2]))
-}
-
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
+    use crate::filter::Certain;
     use crate::lanes::{Isa, dispatch};
     use crate::query::EdgeRule;
     use crate::ray::{Ray, RayPacket};
@@ -175,22 +165,26 @@ mod tests {
                 std::array::from_fn(|axis| std::array::from_fn(|lane| v(&rays[lane])[axis]))
             };
             let (origin, dir) = (component(|ray| ray.origin), component(|ray| ray.dir));
+            let splat: [[[f32; WIDTH]; 3]; 3] = corners.map(|v| v.to_array().map(|x| [x; WIDTH]));
             for isa in Isa::available() {
-                let hits = dispatch!(isa, lanes => intersect8(lanes, &origin, &dir, corners));
-                let candidates = dispatch!(isa, lanes => {
+                let (possible, certain, hits) = dispatch!(isa, lanes => {
                     let rays = RayLanes::gather(lanes, &RayPacket::new(&rays));
-                    Prepared::new(lanes, corners).candidates(lanes, &rays)
+                    let bounded = Prepared::new(lanes, corners).bounded(lanes, &rays);
+                    let Certain { lanes: certain, low, high } = bounded.certain(lanes, &rays);
+                    let width = lanes.store(high - low);
+                    (bounded.possible(lanes, &rays), certain, known8(lanes, &origin, &dir, &splat, &width))
                 });
                 for (lane, ray) in rays.iter().enumerate() {
                     let found = intersect(ray, corners, EdgeRule::Closed);
-                    if hits.clear >> lane & 1 != 0 {
-                        let at = found.expect("a clear hit is one");
-                        let bits = [at.t, at.u, at.v].map(f32::to_bits);
-                        assert_eq!([hits.t, hits.u, hits.v].map(|x| x[lane].to_bits()), bits, "{ray:?}");
+                    let unscaled = (0.5..=2f32.powi(32)).contains(&ray.dir.abs().max_element());
+                    if unscaled && certain & hits.clear & 1 << lane != 0 {
+                        let (at, known) = (found.expect("what is certain is a hit"), hits.at(lane));
+                        let bits = |at: Intersection| [at.t, at.u, at.v].map(f32::to_bits);
+                        assert_eq!(bits(known), bits(at), "{ray:?}");
                         clear += 1;
                     }
                     let within = found.is_some_and(|at| at.t > ray.t_min && at.t <= ray.t_max);
-                    assert!(!within || candidates >> lane & 1 != 0, "{ray:?} {corners:?}");
+                    assert!(!within || possible >> lane & 1 != 0, "{ray:?} {corners:?}");
                 }
             }
         }

@@ -58,13 +58,15 @@ pub(crate) fn clear_hit(ray: &Ray, corners: [Vec3; 3]) -> Option<Intersection> {
 /// those of det and e2.q are 2^29 times ours.
 #[inline(always)]
 pub(crate) fn known_hit(ray: &Ray, corners: [Vec3; 3], width: f32) -> Option<Intersection> {
-    const SHARE: f64 = 1.0 / (1u64 << 29) as f64;
     let error = f64::from(width) * SHARE;
     Rounded::new(ray, corners).hit(
         #[inline(always)]
         |_, _, _| error,
     )
 }
+
+/// What our bounds are of those of the filter.
+pub(crate) const SHARE: f64 = 1.0 / (1u64 << 29) as f64;
 
 /// Decides on what is not a clear hit.
 #[cold]

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
-use fearless_simd::{Simd, SimdBase, SimdFloat, SimdMask, f64x4};
+use fearless_simd::{Simd, SimdBase, SimdMask, f64x4};
 
 use super::{Dispatched, Lanes, WIDTH};
 
@@ -28,12 +28,6 @@ pub(crate) trait Doubles: Lanes {
     fn narrow(self, x: Self::F64x8) -> Self::F32;
     /// The absolute values.
     fn abs8(self, x: Self::F64x8) -> Self::F64x8;
-    /// 1 or -1 with the sign of each value.
-    fn sign8(self, x: Self::F64x8) -> Self::F64x8;
-    /// The lesser values; unspecified where one is NaN.
-    fn min8(self, a: Self::F64x8, b: Self::F64x8) -> Self::F64x8;
-    /// The greater values; unspecified where one is NaN.
-    fn max8(self, a: Self::F64x8, b: Self::F64x8) -> Self::F64x8;
     /// Where a < b, as bits; not where one is NaN.
     fn less8(self, a: Self::F64x8, b: Self::F64x8) -> u32;
     /// Where a <= b, as bits; not where one is NaN.
@@ -106,19 +100,6 @@ impl<S: Simd> Doubles for Dispatched<S> {
     #[inline(always)]
     fn abs8(self, x: Self::F64x8) -> Self::F64x8 {
         Pair(x.0.abs(), x.1.abs())
-    }
-    #[inline(always)]
-    fn sign8(self, x: Self::F64x8) -> Self::F64x8 {
-        let one = f64x4::splat(self.0, 1.0);
-        Pair(one.copysign(x.0), one.copysign(x.1))
-    }
-    #[inline(always)]
-    fn min8(self, a: Self::F64x8, b: Self::F64x8) -> Self::F64x8 {
-        Pair(a.0.min(b.0), a.1.min(b.1))
-    }
-    #[inline(always)]
-    fn max8(self, a: Self::F64x8, b: Self::F64x8) -> Self::F64x8 {
-        Pair(a.0.max(b.0), a.1.max(b.1))
     }
     #[inline(always)]
     fn less8(self, a: Self::F64x8, b: Self::F64x8) -> u32 {

@@ -7,9 +7,9 @@
 //! 1. eight cluster boxes against the frustum,
 //! 2. one box against eight rays, packet by packet,
 //! 3. the cluster's eight triangles against the [`Bundle`] of all lines,
-//! 4. one triangle against eight rays ([`Prepared`]), then the decision in f64 ([`intersect8`]).
+//! 4. one triangle against eight rays ([`Prepared`]).
 //!
-//! Where fewer than [`MANY`] rays of a packet meet a box, the cluster is tested ray by ray instead of 3 and 4.
+//! Most hits are decided last, eight rays at a time ([`Nearest`](super::nearest::Nearest)). Where fewer than [`MANY`] rays of a packet meet a box, the cluster is tested ray by ray instead of 3 and 4.
 //!
 //! Source: I. Wald, T. Ize, A. Kensler, A. Knoll, S. G. Parker, "Ray Tracing Animated Scenes using Coherent
 //! Grid Traversal", 2006, for walking slices with a frustum; the steps are ours.
@@ -22,15 +22,14 @@
 use std::marker::PhantomData;
 
 use super::frustum::{Frustum, span};
-use super::group::{Group, SCALED};
+use super::group::{Group, LONGEST, Packet, SCALED};
+use super::nearest::Source;
 use crate::arena::{Arena, BoxGroup, Voxel};
 use crate::bundle::Bundle;
-use crate::cluster::Cluster;
-use crate::filter::{RayLanes, candidates};
-use crate::lanes::{Doubles, WIDTH};
-use crate::prepared::{Hits, Prepared, intersect8};
+use crate::filter::{Certain, RayLanes, products};
+use crate::lanes::{Doubles, Lanes, WIDTH};
+use crate::prepared::Prepared;
 use crate::query::{EdgeRule, Query, Wanted};
-use crate::ray::Ray;
 use crate::triangle::intersect;
 
 /// Clusters tested last, with the rays that have been tested.
@@ -102,7 +101,19 @@ impl<'a, L: Doubles, Q: Query> Coherent<'a, L, Q> {
             query: PhantomData,
         };
         walk.slices();
+        if walk.effort > 0 {
+            walk.finish();
+        }
         walk.effort > 0
+    }
+
+    /// Decides which hits are the closest.
+    #[inline(always)]
+    fn finish(&mut self) {
+        for i in 0..self.group.packets() {
+            let Packet { nearest, origin, dir, .. } = &mut self.group.packets[i];
+            nearest.finish(self.lanes, self.arena, origin, dir);
+        }
     }
 
     /// Does a part of the effort; false where there was none left.
@@ -257,7 +268,7 @@ impl<'a, L: Doubles, Q: Query> Coherent<'a, L, Q> {
                 let index = group.clusters[lane].cluster();
                 let rays = self.mailbox.new_ones(index, rays);
                 if rays != 0 {
-                    self.cluster(&arena.clusters[index as usize], rays);
+                    self.cluster(index, rays);
                 }
             }
             if group.clusters[0].is_last() {
@@ -293,8 +304,9 @@ impl<'a, L: Doubles, Q: Query> Coherent<'a, L, Q> {
         rays
     }
 
+    /// A cluster against the rays that meet its box.
     #[inline(always)]
-    fn cluster(&mut self, cluster: &Cluster, rays: u64) {
+    fn cluster(&mut self, index: u32, rays: u64) {
         let mut many = 0u32;
         for i in 0..self.group.packets() {
             let mut active = (rays >> (8 * i)) as u32 & 0xff;
@@ -302,21 +314,23 @@ impl<'a, L: Doubles, Q: Query> Coherent<'a, L, Q> {
                 many |= 1 << i;
                 continue;
             }
+            let mut closer = false;
             while active != 0 {
                 let lane = active.trailing_zeros() as usize;
                 active &= active - 1;
-                self.single(cluster, i, lane);
+                closer |= self.single(index, i, lane);
             }
+            self.narrow_packet(i, closer);
         }
         if many != 0 {
-            self.packets(cluster, rays, many);
+            self.packets(index, rays, many);
         }
     }
 
-    /// A cluster against one ray.
+    /// A cluster against one ray; whether a hit is closer than those before.
     #[inline(always)]
-    fn single(&mut self, cluster: &Cluster, i: usize, lane: usize) {
-        let lanes = self.lanes;
+    fn single(&mut self, index: u32, i: usize, lane: usize) -> bool {
+        let (lanes, cluster) = (self.lanes, &self.arena.clusters[index as usize]);
         let packet = &self.group.packets[i];
         let three = |v: &[[f32; WIDTH]; 3]| {
             [lanes.splat(v[0][lane]), lanes.splat(v[1][lane]), lanes.splat(v[2][lane])]
@@ -328,74 +342,129 @@ impl<'a, L: Doubles, Q: Query> Coherent<'a, L, Q> {
             t_min: lanes.splat(packet.t_min[lane]),
             t_max: lanes.splat(packet.t_max[lane]),
         };
-        let mut bits = candidates(lanes, &ray, cluster.lanes(lanes)) & u32::from(cluster.occupied());
-        while bits != 0 {
-            let triangle = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            let mut hits = Hits { clear: 0, t: [0.0; WIDTH], u: [0.0; WIDTH], v: [0.0; WIDTH] };
-            let corners = cluster.triangle(triangle);
-            let found = exactly(&self.group.line(i, lane), corners, lane, &mut hits);
-            self.take(i, &hits, found, cluster.ids()[triangle]);
+        let bounded = products(lanes, &ray, cluster.lanes(lanes)).bounded(lanes, &ray);
+        let mut bits = bounded.possible(lanes, &ray) & u32::from(cluster.occupied());
+        if bits == 0 {
+            return false;
         }
+        let after = lanes.splat(packet.after[lane]);
+        let certain =
+            Unscaled::new(lanes, &bounded.certain(lanes, &ray), lanes.splat(packet.unit[lane]), after);
+        let mut closer = false;
+        while bits != 0 {
+            let triangle = bits.trailing_zeros();
+            bits &= bits - 1;
+            closer |= self.hit(i, lane, Source { cluster: index, lane: triangle }, certain.at(triangle));
+        }
+        closer
     }
 
     /// The triangles of a cluster against the packets in `many`.
     #[inline(always)]
-    fn packets(&mut self, cluster: &Cluster, rays: u64, many: u32) {
-        let lanes = self.lanes;
-        let mut triangles = self.bundle.candidates(lanes, cluster);
+    fn packets(&mut self, index: u32, rays: u64, many: u32) {
+        let (lanes, cluster) = (self.lanes, &self.arena.clusters[index as usize]);
+        let mut triangles = self.bundle.candidates(lanes, cluster) & u32::from(cluster.occupied());
+        let mut narrower = 0u32;
         while triangles != 0 {
-            let triangle = triangles.trailing_zeros() as usize;
+            let triangle = triangles.trailing_zeros();
             triangles &= triangles - 1;
-            let prim = cluster.ids()[triangle];
-            if prim == Cluster::NO_TRIANGLE {
-                break;
-            }
-            let corners = cluster.triangle(triangle);
-            let prepared = Prepared::new(lanes, corners);
+            let source = Source { cluster: index, lane: triangle };
+            let prepared = Prepared::new(lanes, cluster.triangle(triangle as usize));
             let mut left = many;
             while left != 0 {
                 let i = left.trailing_zeros() as usize;
                 left &= left - 1;
                 let packet = &self.group.packets[i];
-                let active = (rays >> (8 * i)) as u32 & 0xff;
-                let bits = prepared.candidates(lanes, &packet.lanes(lanes)) & active;
+                let ray = packet.lanes(lanes);
+                let bounded = prepared.bounded(lanes, &ray);
+                let mut bits = bounded.possible(lanes, &ray) & (rays >> (8 * i)) as u32 & 0xff;
                 if bits != 0 {
-                    let mut hits = intersect8(lanes, &packet.origin, &packet.dir, corners);
-                    let mut found = bits & hits.clear;
-                    let mut unclear = bits & !hits.clear;
-                    while unclear != 0 {
-                        let lane = unclear.trailing_zeros() as usize;
-                        unclear &= unclear - 1;
-                        found |= exactly(&self.group.line(i, lane), corners, lane, &mut hits);
+                    let (unit, after) = (lanes.load(&packet.unit), lanes.load(&packet.after));
+                    let certain = Unscaled::new(lanes, &bounded.certain(lanes, &ray), unit, after);
+                    while bits != 0 {
+                        let lane = bits.trailing_zeros();
+                        bits &= bits - 1;
+                        let closer = self.hit(i, lane as usize, source, certain.at(lane));
+                        narrower |= u32::from(closer) << i;
                     }
-                    self.take(i, &hits, found, prim);
                 }
             }
         }
+        while narrower != 0 {
+            let i = narrower.trailing_zeros() as usize;
+            narrower &= narrower - 1;
+            self.narrow_packet(i, true);
+        }
     }
 
+    /// A ray may hit a triangle, or does so with t between two bounds; whether the hit is closer than those before.
     #[inline(always)]
-    fn take(&mut self, i: usize, hits: &Hits, found: u32, prim: u32) {
-        let (rises, slack) = (self.group.rises, self.group.slack);
+    fn hit(&mut self, i: usize, lane: usize, source: Source, certain: Option<[f32; 2]>) -> bool {
+        let prim = self.arena.clusters[source.cluster as usize].ids()[source.lane as usize];
         let packet = &mut self.group.packets[i];
-        if packet.take(hits, found, prim) {
+        if let Some(bounds) = certain {
+            if Q::WANTED == Wanted::Any {
+                packet.nearest.note(lane, prim);
+                return true;
+            }
+            if let Some(closer) = packet.nearest.defer(lane, bounds, prim, source) {
+                return closer;
+            }
+        }
+        self.decide(i, lane, source, prim)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn decide(&mut self, i: usize, lane: usize, source: Source, prim: u32) -> bool {
+        let ray = self.group.line(i, lane);
+        let corners = self.arena.clusters[source.cluster as usize].triangle(source.lane as usize);
+        let packet = &mut self.group.packets[i];
+        match intersect(&ray, corners, EdgeRule::Closed) {
+            Some(at) if at.t > packet.after[lane] => packet.nearest.take(self.arena, &ray, lane, at, prim),
+            _ => false,
+        }
+    }
+
+    /// Follows hits that are closer.
+    #[inline(always)]
+    fn narrow_packet(&mut self, i: usize, closer: bool) {
+        if closer {
             self.changed = true;
+            let (rises, slack) = (self.group.rises, self.group.slack);
+            let packet = &mut self.group.packets[i];
             if Q::WANTED == Wanted::Any { packet.finish() } else { packet.shorten(self.lanes, rises, slack) }
         }
     }
 }
 
+/// [`Certain`] hits in units of the rays' own t.
+struct Unscaled {
+    lanes: u32,
+    low: [f32; WIDTH],
+    high: [f32; WIDTH],
+}
+
+impl Unscaled {
+    /// Powers of two scale without rounding, where nothing overflows or underflows; what is not after the open
+    /// end of the interval, which the scaled one contains, is not certain.
+    #[inline(always)]
+    fn new<L: Lanes>(lanes: L, certain: &Certain<L>, unit: L::F32, after: L::F32) -> Self {
+        let (low, high) = (certain.low * unit, certain.high * unit);
+        let within = lanes.less(lanes.max(after, lanes.splat(2f32.powi(-LONGEST))), low)
+            & lanes.less(high, lanes.splat(2f32.powi(LONGEST)));
+        Self { lanes: certain.lanes & lanes.bits(within), low: lanes.store(low), high: lanes.store(high) }
+    }
+
+    /// The bounds of t in a lane that is certain.
+    #[inline(always)]
+    fn at(&self, lane: u32) -> Option<[f32; 2]> {
+        (self.lanes >> lane & 1 != 0).then(|| [self.low[lane as usize], self.high[lane as usize]])
+    }
+}
+
 /// Packets of which fewer rays meet a cluster's box are tested ray by ray.
 const MANY: u32 = 4;
-
-/// The decision on one ray, at its lane; which is set in the result where it is a hit.
-#[inline(never)]
-fn exactly(ray: &Ray, corners: [glam::Vec3; 3], lane: usize, hits: &mut Hits) -> u32 {
-    let Some(at) = intersect(ray, corners, EdgeRule::Closed) else { return 0 };
-    (hits.t[lane], hits.u[lane], hits.v[lane]) = (at.t, at.u, at.v);
-    1 << lane
-}
 
 /// By axis and four bits along it: the voxels of a brick with such an index.
 const SPREAD: [[u64; 16]; 3] = {

@@ -30,7 +30,7 @@ pub(crate) struct Frustum {
 }
 
 impl Frustum {
-    /// Around the rays that are not finished; `None` where there are none.
+    /// Around the rays; `None` where none of them meets the grid.
     #[inline(always)]
     pub(crate) fn around<L: Lanes>(lanes: L, group: &Group, longest: f32) -> Option<Self> {
         let span = span(lanes, group);
@@ -134,23 +134,16 @@ pub(crate) fn span<L: Lanes>(lanes: L, group: &Group) -> [f32; 2] {
     [least(&lanes.store(low)), greatest(&lanes.store(high))]
 }
 
-/// The least and greatest place along a minor axis of the rays that are not finished.
+/// The least and greatest place along a minor axis of the rays at `x`.
 #[inline(always)]
 fn bounds<L: Lanes>(lanes: L, group: &Group, side: usize, x: f32) -> [f32; 2] {
-    let (mut low, mut high) = ([f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]);
+    let x = lanes.splat(x);
+    let (mut low, mut high) = (lanes.splat(f32::INFINITY), lanes.splat(f32::NEG_INFINITY));
     for packet in &group.packets[..group.packets()] {
-        let u = lanes.store(lanes.mul_add(
-            lanes.splat(x),
-            lanes.load(&packet.slope[side]),
-            lanes.load(&packet.at[side]),
-        ));
-        for lane in 0..WIDTH {
-            let live = packet.span[0][lane] <= packet.span[1][lane];
-            low[lane] = if live && u[lane] < low[lane] { u[lane] } else { low[lane] };
-            high[lane] = if live && u[lane] > high[lane] { u[lane] } else { high[lane] };
-        }
+        let u = lanes.mul_add(x, lanes.load(&packet.slope[side]), lanes.load(&packet.at[side]));
+        (low, high) = (lanes.min(low, u), lanes.max(high, u));
     }
-    [least(&low), greatest(&high)]
+    [least(&lanes.store(low)), greatest(&lanes.store(high))]
 }
 
 #[inline(always)]

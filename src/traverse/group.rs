@@ -11,13 +11,11 @@
 //! grid; evaluating it adds less than 2^-22 S. Voxels and boxes are built larger by four times that, see
 //! [`BRICK_MARGIN`](crate::dda::BRICK_MARGIN). Spans are enlarged by [`SLACK`].
 
-use glam::Vec3;
-
+use super::nearest::{Nearest, line};
 use crate::arena::Grid;
 use crate::filter::RayLanes;
 use crate::hit::Hit;
 use crate::lanes::{Doubles, Lanes, WIDTH};
-use crate::prepared::Hits;
 use crate::ray::Ray;
 
 /// The most rays of a group.
@@ -29,6 +27,10 @@ const PACKETS: usize = GROUP / WIDTH;
 
 /// Slopes above this make no group.
 const STEEPEST: f64 = 3.0;
+
+/// Directions whose largest component is beyond 2 to the power of this, or below its inverse, make no group: so t is
+/// scaled without rounding.
+pub(crate) const LONGEST: i32 = 100;
 
 /// More than the rounding errors of a place along the main axis, in sizes S of the grid.
 pub(crate) const SLACK: f64 = 1.0 / (1u64 << 20) as f64;
@@ -48,11 +50,7 @@ pub(crate) struct Packet {
     pub(crate) t_max: [f32; WIDTH],
     /// The open lower end of the interval.
     pub(crate) after: [f32; WIDTH],
-    /// The closest hit so far; at first the upper end of the interval, without a triangle.
-    pub(crate) t: [f32; WIDTH],
-    pub(crate) u: [f32; WIDTH],
-    pub(crate) v: [f32; WIDTH],
-    pub(crate) prim: [u32; WIDTH],
+    pub(crate) nearest: Nearest,
     /// The lines along the two other axes.
     pub(crate) at: [[f32; WIDTH]; 2],
     pub(crate) slope: [[f32; WIDTH]; 2],
@@ -61,8 +59,9 @@ pub(crate) struct Packet {
     /// x at t = 0, and x a unit of t.
     start: [f64; WIDTH],
     speed: [f64; WIDTH],
-    /// Scaled t a unit of t.
+    /// Scaled t a unit of t, and its inverse.
     scale: [f64; WIDTH],
+    pub(crate) unit: [f32; WIDTH],
 }
 
 impl Packet {
@@ -73,13 +72,11 @@ impl Packet {
         t_min: [0.0; WIDTH],
         t_max: [0.0; WIDTH],
         after: [0.0; WIDTH],
-        t: [0.0; WIDTH],
-        u: [0.0; WIDTH],
-        v: [0.0; WIDTH],
-        prim: [u32::MAX; WIDTH],
+        nearest: Nearest::NONE,
         start: [0.0; WIDTH],
         speed: [0.0; WIDTH],
         scale: [0.0; WIDTH],
+        unit: [0.0; WIDTH],
         at: [[0.0; WIDTH]; 2],
         slope: [[0.0; WIDTH]; 2],
         span: [[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]],
@@ -126,19 +123,13 @@ impl Group {
     /// The closest hit of a ray.
     #[inline(always)]
     pub(crate) fn hit(&self, ray: usize) -> Hit {
-        let (packet, lane) = (&self.packets[ray / WIDTH], ray % WIDTH);
-        match packet.prim[lane] {
-            u32::MAX => Hit::MISS,
-            prim => Hit { t: packet.t[lane], u: packet.u[lane], v: packet.v[lane], prim },
-        }
+        self.packets[ray / WIDTH].nearest.hit(ray % WIDTH)
     }
 
     /// One of the rays, but for its interval.
     #[inline(always)]
     pub(crate) fn line(&self, packet: usize, lane: usize) -> Ray {
-        let packet = &self.packets[packet];
-        let at = |v: &[[f32; WIDTH]; 3]| Vec3::new(v[0][lane], v[1][lane], v[2][lane]);
-        Ray::new(at(&packet.origin), at(&packet.dir))
+        line(&self.packets[packet].origin, &self.packets[packet].dir, lane)
     }
 
     /// Takes one to [`GROUP`] rays.
@@ -154,8 +145,7 @@ impl Group {
                     out.dir[axis][lane] = ray.dir[axis];
                 }
                 out.after[lane] = ray.t_min;
-                out.t[lane] = ray.t_max;
-                out.prim[lane] = u32::MAX;
+                out.nearest.start(lane, ray.t_max);
             }
         }
     }
@@ -205,7 +195,7 @@ impl Group {
             & finite(&out.dir[0])
             & finite(&out.dir[1])
             & finite(&out.dir[2])
-            & lanes.less(lanes.load(&out.after), lanes.load(&out.t));
+            & lanes.less(lanes.load(&out.after), lanes.load(&out.nearest.t));
         let mut fit = ahead & lanes.bits(valid) & lanes.at_most8(lanes.abs8(x), near(main));
         for side in 0..2 {
             let axis = others[side];
@@ -217,7 +207,7 @@ impl Group {
                 & lanes.at_most8(lanes.abs8(u), near(axis));
         }
         let from = lanes.narrow(x + widened(lanes, &out.after) * speed);
-        let to = lanes.narrow(reach(lanes, x, widened(lanes, &out.t) * speed, self.rises));
+        let to = lanes.narrow(reach(lanes, x, widened(lanes, &out.nearest.t) * speed, self.rises));
         let (low, high) = if self.rises { (from, to) } else { (to, from) };
         let slack = lanes.splat(self.slack);
         out.span[0] = lanes.store(lanes.max(low - slack, lanes.splat(-1.0)));
@@ -230,13 +220,16 @@ impl Group {
         out.speed = lanes.store8(speed);
         let load = |x: &[f32; WIDTH]| lanes.abs(lanes.load(x));
         let largest = lanes.max(lanes.max(load(&out.dir[0]), load(&out.dir[1])), load(&out.dir[2]));
-        let largest = lanes.store8(lanes.widen(largest));
+        let (short, long) = (lanes.splat(2f32.powi(-LONGEST)), lanes.splat(2f32.powi(LONGEST)));
+        fit &= lanes.bits(lanes.less(short, largest) & lanes.less(largest, long));
+        let wide = lanes.store8(lanes.widen(largest));
         let mut factor = [0.0; WIDTH];
         for lane in 0..WIDTH {
-            // 2^-e and 2^e, where the largest component is in [2^(e - 1), 2^e); anything where it is not finite.
-            let exponent = largest[lane].to_bits() >> 52;
+            // 2^-e and 2^e, where the largest component is in [2^(e - 1), 2^e); anything where it does not fit.
+            let exponent = wide[lane].to_bits() >> 52;
             factor[lane] = f64::from_bits(2045u64.wrapping_sub(exponent) << 52);
             out.scale[lane] = f64::from_bits((exponent + 1) << 52);
+            out.unit[lane] = factor[lane] as f32;
         }
         let factor = lanes.load8(&factor);
         for axis in 0..3 {
@@ -244,44 +237,24 @@ impl Group {
         }
         let scale = lanes.load8(&out.scale);
         out.t_min = lanes.store(-above(lanes, lanes.splat8(0.0) - widened(lanes, &out.after) * scale));
-        out.t_max = lanes.store(above(lanes, widened(lanes, &out.t) * scale));
+        out.t_max = lanes.store(above(lanes, widened(lanes, &out.nearest.t) * scale));
         fit == 0xff
     }
 }
 
 impl Packet {
-    /// Takes the hits of a triangle in `lanes` where they are the closest so far; whether one is.
-    #[inline(always)]
-    pub(crate) fn take(&mut self, hits: &Hits, mut lanes: u32, prim: u32) -> bool {
-        let mut any = false;
-        while lanes != 0 {
-            let lane = lanes.trailing_zeros() as usize;
-            lanes &= lanes - 1;
-            let (t, best) = (hits.t[lane], self.t[lane]);
-            if t > self.after[lane] && (t < best || t == best && prim < self.prim[lane]) {
-                self.t[lane] = t;
-                self.u[lane] = hits.u[lane];
-                self.v[lane] = hits.v[lane];
-                self.prim[lane] = prim;
-                any = true;
-            }
-        }
-        any
-    }
-
     /// Rays with a hit are done.
     #[inline(always)]
     pub(crate) fn finish(&mut self) {
         for lane in 0..WIDTH {
-            let hit = self.prim[lane] != u32::MAX;
-            self.span[0][lane] = if hit { f32::INFINITY } else { self.span[0][lane] };
+            self.span[0][lane] = if self.nearest.is_hit(lane) { f32::INFINITY } else { self.span[0][lane] };
         }
     }
 
     /// Nothing beyond the closest hits counts.
     #[inline(always)]
     pub(crate) fn shorten<L: Doubles>(&mut self, lanes: L, rises: bool, slack: f32) {
-        let t = lanes.widen(lanes.load(&self.t));
+        let t = widened(lanes, &self.nearest.t);
         let way = t * lanes.load8(&self.speed);
         let x = lanes.narrow(reach(lanes, lanes.load8(&self.start), way, rises));
         if rises {

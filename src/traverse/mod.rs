@@ -11,6 +11,7 @@ mod frustum;
 mod group;
 mod hybrid;
 mod leaf;
+mod nearest;
 mod octree;
 mod recursive;
 mod uniform;

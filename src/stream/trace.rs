@@ -6,7 +6,7 @@ use super::gather::Gather;
 use crate::arena::Form;
 use crate::hit::Hit;
 use crate::lanes::{WIDTH, dispatch};
-use crate::query::{Any, Closest};
+use crate::query::{Any, Closest, Wanted};
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::traverse::{self, FEWEST, GROUP, Group, PerRay};
@@ -18,7 +18,10 @@ const CHUNK: usize = 4096;
 const BLOCK: usize = 256;
 
 /// Blocks that are traced ray by ray after one in which it did not pay.
-const PAUSE: usize = 7;
+const PAUSE: usize = 15;
+
+/// Groups that the first 64 rays of a block may open: more show that rays go all ways.
+const MOST_OPENED: usize = 16;
 
 impl Scene {
     /// [`Scene::closest`] of each ray, with rays that go alike traced together.
@@ -64,8 +67,25 @@ struct Stream<'a, Q: PerRay> {
     answers: &'a mut [Q::Answer],
     group: Group,
     gather: Gather,
-    /// Rays gathered in this block that were not to be traced together.
+    gathered: Gathered,
+}
+
+/// What has become of the rays gathered in a block.
+#[derive(Clone, Copy, Default)]
+struct Gathered {
+    /// They were traced together.
+    together: usize,
+    /// Those of them that are blocked, where that is all that is asked.
+    blocked: usize,
+    /// They were not to be traced together.
     refused: usize,
+}
+
+impl Gathered {
+    /// Whether that was faster than ray by ray. What is blocked ends early alone, and late in a group.
+    fn pays(&self) -> bool {
+        8 * self.refused <= self.together && 4 * self.blocked <= self.together
+    }
 }
 
 impl<Q: PerRay> Stream<'_, Q> {
@@ -113,8 +133,12 @@ impl<Q: PerRay> Stream<'_, Q> {
     fn gather(&mut self, at: usize, end: usize) -> bool {
         dispatch!(self.scene.isa, lanes => {
             let mut opened = 0;
-            self.refused = 0;
+            self.gathered = Gathered::default();
             for i in at..end {
+                if i == at + GROUP && opened > MOST_OPENED {
+                    self.scene.each_ray::<Q>(&self.rays[i..end], &mut self.answers[i..end]);
+                    return false;
+                }
                 let ray = &self.rays[i];
                 let slot = match self.gather.find(lanes, ray) {
                     Some(slot) => slot,
@@ -130,7 +154,7 @@ impl<Q: PerRay> Stream<'_, Q> {
                     self.close(slot);
                 }
             }
-            opened * FEWEST <= end - at && 2 * self.refused <= end - at
+            opened * FEWEST <= end - at && self.gathered.pays()
         })
     }
 
@@ -141,13 +165,16 @@ impl<Q: PerRay> Stream<'_, Q> {
         let members = &self.gather.rays[slot][..len];
         let ray = |i: usize| self.rays[members[i] as usize];
         let together = len >= FEWEST && trace::<Q>(self.scene, &mut self.group, len, ray);
-        if len >= FEWEST && !together {
-            self.refused += len;
-        }
         let mut answers = [Q::of(Hit::MISS); GROUP];
         if together {
-            (0..len).for_each(|i| answers[i] = Q::of(self.group.hit(i)));
+            self.gathered.together += len;
+            for i in 0..len {
+                let hit = self.group.hit(i);
+                self.gathered.blocked += usize::from(Q::WANTED == Wanted::Any && hit.is_hit());
+                answers[i] = Q::of(hit);
+            }
         } else {
+            self.gathered.refused += if len >= FEWEST { len } else { 0 };
             let mut rays = [self.rays[0]; GROUP];
             (0..len).for_each(|i| rays[i] = ray(i));
             self.scene.each_ray::<Q>(&rays[..len], &mut answers[..len]);
@@ -165,5 +192,5 @@ fn trace<Q: PerRay>(scene: &Scene, group: &mut Group, len: usize, ray: impl Fn(u
 fn stream<Q: PerRay>(scene: &Scene, rays: &[Ray], answers: &mut [Q::Answer]) {
     let grid = &scene.arena.grid;
     let gather = Gather::new(grid.cell * f64::from(grid.longest()));
-    Stream::<Q> { scene, rays, answers, group: Group::new(), gather, refused: 0 }.run();
+    Stream::<Q> { scene, rays, answers, group: Group::new(), gather, gathered: Gathered::default() }.run();
 }

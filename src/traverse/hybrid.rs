@@ -154,6 +154,9 @@ struct Cells<'a, L: Lanes, V> {
     slope: Vec3Lanes<L>,
     /// Minus the time at which the path passes the grid's lower corner.
     delay: Vec3Lanes<L>,
+    /// The sides of boxes that the path enters and leaves by.
+    near: [usize; 3],
+    far: [usize; 3],
 }
 
 impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
@@ -162,7 +165,15 @@ impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
         let &Start { octant, clock, slope, delay, .. } = start;
         let limit = Limit::new(clock, start.steps.end, visit.t_max());
         let (last, end) = (above(limit.time), above(start.steps.end));
-        Self { lanes, arena, octant, clock, visit, limit, last, end, slope, delay }
+        let near = axes(
+            #[inline(always)]
+            |axis| (octant >> axis & 1) as usize,
+        );
+        let far = axes(
+            #[inline(always)]
+            |axis| (!octant >> axis & 1) as usize,
+        );
+        Self { lanes, arena, octant, clock, visit, limit, last, end, slope, delay, near, far }
     }
 
     /// Follows the query's `t_max`, and says whether it has changed.
@@ -261,11 +272,10 @@ impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
         let lanes = self.lanes;
         let (mut start, mut end) = (lanes.splat(0.0), lanes.splat(self.last));
         for axis in 0..3 {
-            let (lower, upper) = (lanes.load(&group.planes[0][axis]), lanes.load(&group.planes[1][axis]));
-            let a = lanes.mul_add(lower, self.slope[axis], self.delay[axis]);
-            let b = lanes.mul_add(upper, self.slope[axis], self.delay[axis]);
-            start = lanes.max(start, lanes.min(a, b));
-            end = lanes.min(end, lanes.max(a, b));
+            let (near, far) = (self.near[axis] & 1, self.far[axis] & 1);
+            let (near, far) = (lanes.load(&group.planes[near][axis]), lanes.load(&group.planes[far][axis]));
+            start = lanes.max(start, lanes.mul_add(near, self.slope[axis], self.delay[axis]));
+            end = lanes.min(end, lanes.mul_add(far, self.slope[axis], self.delay[axis]));
         }
         (start, end)
     }

@@ -4,7 +4,7 @@ use crate::hit::{Hit, HitPacket};
 use crate::query::{Any, Closest};
 use crate::ray::{Ray, RayPacket};
 use crate::scene::Scene;
-use crate::traverse::{self, FEWEST, GROUP, Group, PerRay};
+use crate::traverse::{self, FEWEST, Group, PACKETS, Packet, PerRay};
 
 impl Scene {
     /// [`Scene::closest`] of each ray of N packets, traced together where they go alike: a packet of 16 rays
@@ -40,9 +40,11 @@ impl Scene {
         packets: &[RayPacket; N],
         mut answer: impl FnMut(usize, usize, Q::Answer),
     ) {
-        const { assert!(1 <= N && N * RayPacket::LEN <= GROUP, "one to eight packets") };
-        let mut rays = [Ray::new([0.0; 3], [0.0; 3]); GROUP];
-        let mut lanes = [(0, 0); GROUP];
+        const { assert!(1 <= N && N <= PACKETS, "one to eight packets") };
+        let mut rays = [[Ray::new([0.0; 3], [0.0; 3]); RayPacket::LEN]; N];
+        let mut lanes = [[(0, 0); RayPacket::LEN]; N];
+        let mut answers = [[Q::of(Hit::MISS); RayPacket::LEN]; N];
+        let (rays, lanes) = (rays.as_flattened_mut(), lanes.as_flattened_mut());
         let mut len = 0;
         for (i, packet) in packets.iter().enumerate() {
             for lane in 0..RayPacket::LEN {
@@ -53,21 +55,20 @@ impl Scene {
                 }
             }
         }
-        let mut answers = [Q::of(Hit::MISS); GROUP];
-        let (rays, answers) = (&rays[..len], &mut answers[..len]);
-        if !self.trace_together::<Q>(rays, answers) {
+        let (rays, answers) = (&rays[..len], &mut answers.as_flattened_mut()[..len]);
+        if !self.trace_together::<Q, N>(rays, answers) {
             self.each_ray::<Q>(rays, answers);
         }
-        answers.iter().zip(lanes).for_each(|(&found, (packet, lane))| answer(packet, lane, found));
+        answers.iter().zip(lanes).for_each(|(&found, &mut (packet, lane))| answer(packet, lane, found));
     }
 
-    /// False where the rays don't go alike, and nothing is answered. Groups are large: none is made for rays apart,
-    /// and none is moved.
-    fn trace_together<Q: PerRay>(&self, rays: &[Ray], answers: &mut [Q::Answer]) -> bool {
+    /// False where the rays don't go alike, and nothing is answered. Groups are large: none is made for rays apart.
+    fn trace_together<Q: PerRay, const N: usize>(&self, rays: &[Ray], answers: &mut [Q::Answer]) -> bool {
         if rays.len() < FEWEST || !point_alike(rays) {
             return false;
         }
-        let mut group = Group::new();
+        let mut packets = [Packet::ZERO; N];
+        let mut group = Group::new(&mut packets);
         group.load(rays.len(), |i| rays[i]);
         let together = traverse::group::<Q>(self.isa, &self.arena, &mut group);
         if together {

@@ -9,7 +9,7 @@ use crate::lanes::{WIDTH, dispatch};
 use crate::query::{Any, Closest, Wanted};
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::traverse::{self, FEWEST, GROUP, Group, PerRay};
+use crate::traverse::{self, FEWEST, GROUP, Group, PACKETS, Packet, PerRay};
 
 /// Rays a task.
 const CHUNK: usize = 4096;
@@ -65,7 +65,7 @@ struct Stream<'a, Q: PerRay> {
     scene: &'a Scene,
     rays: &'a [Ray],
     answers: &'a mut [Q::Answer],
-    group: Group,
+    group: Group<'a>,
     gather: Gather,
     gathered: Gathered,
 }
@@ -184,7 +184,7 @@ impl<Q: PerRay> Stream<'_, Q> {
 }
 
 /// Traces rays together; false where they don't go alike, and nothing is answered.
-fn trace<Q: PerRay>(scene: &Scene, group: &mut Group, len: usize, ray: impl Fn(usize) -> Ray) -> bool {
+fn trace<Q: PerRay>(scene: &Scene, group: &mut Group<'_>, len: usize, ray: impl Fn(usize) -> Ray) -> bool {
     group.load(len, ray);
     traverse::group::<Q>(scene.isa, &scene.arena, group)
 }
@@ -192,5 +192,7 @@ fn trace<Q: PerRay>(scene: &Scene, group: &mut Group, len: usize, ray: impl Fn(u
 fn stream<Q: PerRay>(scene: &Scene, rays: &[Ray], answers: &mut [Q::Answer]) {
     let grid = &scene.arena.grid;
     let gather = Gather::new(grid.cell * f64::from(grid.longest()));
-    Stream::<Q> { scene, rays, answers, group: Group::new(), gather, gathered: Gathered::default() }.run();
+    let mut packets = [Packet::ZERO; PACKETS];
+    let (group, gathered) = (Group::new(&mut packets), Gathered::default());
+    Stream::<Q> { scene, rays, answers, group, gather, gathered }.run();
 }

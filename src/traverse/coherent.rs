@@ -64,10 +64,10 @@ const WIDEST: f32 = 0.2;
 const EFFORT: u32 = 8;
 
 /// Traces a group.
-pub(crate) struct Coherent<'a, L, Q> {
+pub(crate) struct Coherent<'a, 'b, L, Q> {
     lanes: L,
     arena: &'a Arena,
-    group: &'a mut Group,
+    group: &'a mut Group<'b>,
     mailbox: Mailbox,
     frustum: Frustum,
     bundle: Bundle,
@@ -77,10 +77,10 @@ pub(crate) struct Coherent<'a, L, Q> {
     query: PhantomData<Q>,
 }
 
-impl<'a, L: Doubles, Q: Query> Coherent<'a, L, Q> {
+impl<'a, 'b, L: Doubles, Q: Query> Coherent<'a, 'b, L, Q> {
     /// Traces a group; false where it spreads too far, and its hits mean nothing.
     #[inline(always)]
-    pub(crate) fn run(lanes: L, arena: &'a Arena, group: &'a mut Group) -> bool {
+    pub(crate) fn run(lanes: L, arena: &'a Arena, group: &'a mut Group<'b>) -> bool {
         let longest = arena.grid.longest() as f32;
         let Some(frustum) = Frustum::around(lanes, group, longest) else { return true };
         if frustum.width() > WIDEST * longest {

@@ -32,7 +32,7 @@ pub(crate) struct Frustum {
 impl Frustum {
     /// Around the rays; `None` where none of them meets the grid.
     #[inline(always)]
-    pub(crate) fn around<L: Lanes>(lanes: L, group: &Group, longest: f32) -> Option<Self> {
+    pub(crate) fn around<L: Lanes>(lanes: L, group: &Group<'_>, longest: f32) -> Option<Self> {
         let span = span(lanes, group);
         if span[0] > span[1] {
             return None;
@@ -125,7 +125,7 @@ impl Frustum {
 
 /// The span of all rays.
 #[inline(always)]
-pub(crate) fn span<L: Lanes>(lanes: L, group: &Group) -> [f32; 2] {
+pub(crate) fn span<L: Lanes>(lanes: L, group: &Group<'_>) -> [f32; 2] {
     let (mut low, mut high) = (lanes.splat(f32::INFINITY), lanes.splat(f32::NEG_INFINITY));
     for packet in &group.packets[..group.packets()] {
         low = lanes.min(low, lanes.load(&packet.span[0]));
@@ -136,7 +136,7 @@ pub(crate) fn span<L: Lanes>(lanes: L, group: &Group) -> [f32; 2] {
 
 /// The least and greatest place along a minor axis of the rays at `x`.
 #[inline(always)]
-fn bounds<L: Lanes>(lanes: L, group: &Group, side: usize, x: f32) -> [f32; 2] {
+fn bounds<L: Lanes>(lanes: L, group: &Group<'_>, side: usize, x: f32) -> [f32; 2] {
     let x = lanes.splat(x);
     let (mut low, mut high) = (lanes.splat(f32::INFINITY), lanes.splat(f32::NEG_INFINITY));
     for packet in &group.packets[..group.packets()] {

@@ -23,7 +23,8 @@ pub(crate) const GROUP: usize = 64;
 /// Fewer rays are not worth a group.
 pub(crate) const FEWEST: usize = 8;
 
-const PACKETS: usize = GROUP / WIDTH;
+/// The most packets of a group.
+pub(crate) const PACKETS: usize = GROUP / WIDTH;
 
 /// Slopes above this make no group.
 const STEEPEST: f64 = 3.0;
@@ -65,21 +66,22 @@ pub(crate) struct Packet {
 }
 
 impl Packet {
-    const EMPTY: Self = Self {
+    /// Not loaded. Zero, which memory is filled with fast.
+    pub(crate) const ZERO: Self = Self {
         origin: [[0.0; WIDTH]; 3],
         dir: [[0.0; WIDTH]; 3],
         scaled: [[0.0; WIDTH]; 3],
         t_min: [0.0; WIDTH],
         t_max: [0.0; WIDTH],
         after: [0.0; WIDTH],
-        nearest: Nearest::NONE,
+        nearest: Nearest::ZERO,
         start: [0.0; WIDTH],
         speed: [0.0; WIDTH],
         scale: [0.0; WIDTH],
         unit: [0.0; WIDTH],
         at: [[0.0; WIDTH]; 2],
         slope: [[0.0; WIDTH]; 2],
-        span: [[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]],
+        span: [[0.0; WIDTH]; 2],
     };
 
     /// As the filter of triangles takes them.
@@ -97,9 +99,9 @@ impl Packet {
 }
 
 /// The rays.
-#[derive(Clone)]
-pub(crate) struct Group {
-    pub(crate) packets: [Packet; PACKETS],
+pub(crate) struct Group<'a> {
+    /// Room for them.
+    pub(crate) packets: &'a mut [Packet],
     pub(crate) len: usize,
     /// The main axis, and the two others.
     pub(crate) main: usize,
@@ -109,9 +111,10 @@ pub(crate) struct Group {
     pub(crate) slack: f32,
 }
 
-impl Group {
-    pub(crate) fn new() -> Self {
-        Self { packets: [Packet::EMPTY; PACKETS], len: 0, main: 0, others: [1, 2], rises: true, slack: 0.0 }
+impl<'a> Group<'a> {
+    /// With room for the rays of up to eight packets.
+    pub(crate) fn new(packets: &'a mut [Packet]) -> Self {
+        Self { packets, len: 0, main: 0, others: [1, 2], rises: true, slack: 0.0 }
     }
 
     /// The packets in use.
@@ -132,7 +135,7 @@ impl Group {
         line(&self.packets[packet].origin, &self.packets[packet].dir, lane)
     }
 
-    /// Takes one to [`GROUP`] rays.
+    /// Takes one ray or more.
     #[inline(always)]
     pub(crate) fn load(&mut self, len: usize, ray: impl Fn(usize) -> Ray) {
         self.len = len;

@@ -28,7 +28,9 @@ use crate::ray::Ray;
 pub(crate) use batch::{PerRay, batch};
 use brute::Brute;
 use coherent::Coherent;
-pub(crate) use group::{FEWEST, GROUP, Group};
+#[cfg(feature = "parallel")]
+pub(crate) use group::GROUP;
+pub(crate) use group::{FEWEST, Group, PACKETS, Packet};
 use hybrid::Hybrid;
 use leaf::LeafTest;
 use octree::Octree;
@@ -153,7 +155,7 @@ fn every_cluster<L: Lanes, V: Visit>(lanes: L, arena: &Arena, visit: &mut V) -> 
 
 /// Traces the rays of a group together; false where they don't go alike, and its hits mean nothing.
 #[inline(never)]
-pub(crate) fn group<Q: PerRay>(isa: Isa, arena: &Arena, group: &mut Group) -> bool {
+pub(crate) fn group<Q: PerRay>(isa: Isa, arena: &Arena, group: &mut Group<'_>) -> bool {
     if arena.form != Form::Bricks {
         return false;
     }

@@ -40,14 +40,14 @@ pub(crate) struct Nearest {
 }
 
 impl Nearest {
-    /// No hits.
-    pub(crate) const NONE: Self = Self {
-        t: [f32::INFINITY; WIDTH],
-        low: [f32::INFINITY; WIDTH],
+    /// Not started.
+    pub(crate) const ZERO: Self = Self {
+        t: [0.0; WIDTH],
+        low: [0.0; WIDTH],
         u: [0.0; WIDTH],
         v: [0.0; WIDTH],
-        prim: [u32::MAX; WIDTH],
-        source: [Source::NONE; WIDTH],
+        prim: [0; WIDTH],
+        source: [Source { cluster: 0, lane: 0 }; WIDTH],
     };
 
     /// Starts anew, with nothing beyond `t_max`.
@@ -130,7 +130,11 @@ impl Nearest {
         let Source { cluster, lane: slot } = self.source[lane];
         let corners = arena.clusters[cluster as usize].triangle(slot as usize);
         let at = intersect(ray, corners, EdgeRule::Closed);
-        self.set(lane, at.expect("what is certain is a hit"));
+        debug_assert!(at.is_some(), "what is certain is a hit: {ray:?} {corners:?}");
+        match at {
+            Some(at) => self.set(lane, at),
+            None => self.start(lane, f32::INFINITY),
+        }
     }
 
     /// Decides all that is left; the rays by axis and lane.

@@ -268,8 +268,8 @@ impl<L: Lanes> Bounded<L> {
         !lanes.bits(outside | (beyond & certain)) & 0xff
     }
 
-    /// The lanes for which the bounds leave no doubt: the triangle is hit, and within the interval. Directions
-    /// must not be scaled.
+    /// The lanes for which the bounds leave no doubt: the triangle is hit, and within the interval. Where directions
+    /// are scaled, that is wider than the ray's own.
     ///
     /// The error of t is that of e2.q and |t| times that of det, over det: at most 3/4 of what is taken here,
     /// which leaves room for the error of det in the divisor, below 2^-6 of it, and for the roundings of t. What

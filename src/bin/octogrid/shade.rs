@@ -1,7 +1,9 @@
 //! Direct light on surfaces: one shadow ray to each light, weakened through glass.
 
+use std::ops::ControlFlow;
+
 use glam::{DVec3, Vec3};
-use octogrid::{Hit, Material, Model, Ray, Scene};
+use octogrid::{All, EdgeRule, Hit, Material, Model, Query, Ray, Scene};
 use rayon::prelude::*;
 
 use crate::frame::Rate;
@@ -132,11 +134,14 @@ impl<'a> Shading<'a> {
 
     fn through_glass(&self, ray: &Ray) -> Vec3 {
         let mut hits = [Hit::MISS; MOST_GLASS];
-        let found = self.scene.all(ray, &mut hits);
-        if !found.complete {
+        let is_opaque = |prim| self.material(prim).opacity >= 1.0;
+        let mut panes = Panes { is_opaque, glass: All::new(ray.t_max, &mut hits), blocked: false };
+        self.scene.query(ray, &mut panes);
+        let (blocked, len) = (panes.blocked, panes.glass.len());
+        if blocked {
             return Vec3::ZERO;
         }
-        hits[..found.len].iter().map(|hit| transmittance(self.material(hit.prim))).product()
+        hits[..len].iter().map(|hit| transmittance(self.material(hit.prim))).product()
     }
 
     /// Light from over the viewer's shoulder, from the eye and from the sky, for scenes without
@@ -147,6 +152,31 @@ impl<'a> Shading<'a> {
         let facing = surface.normal.dot(surface.to_eye);
         let sky = 0.5 + 0.5 * surface.normal.dot(self.up);
         Vec3::splat((0.65 * key + 0.2 * facing + 0.15 * sky) as f32)
+    }
+}
+
+/// The glass along a ray, up to the first surface that lets nothing through.
+struct Panes<'a, F> {
+    is_opaque: F,
+    glass: All<'a>,
+    /// By something opaque, or by more glass than there is room for.
+    blocked: bool,
+}
+
+impl<F: Fn(u32) -> bool> Query for Panes<'_, F> {
+    const RULE: EdgeRule = All::RULE;
+
+    fn t_max(&self) -> f32 {
+        self.glass.t_max()
+    }
+
+    fn accept(&mut self, hit: Hit) -> ControlFlow<()> {
+        self.blocked = (self.is_opaque)(hit.prim);
+        if !self.blocked {
+            self.glass.accept(hit)?;
+            self.blocked = !self.glass.is_complete();
+        }
+        if self.blocked { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 

@@ -54,8 +54,8 @@ pub(crate) fn clear_hit(ray: &Ray, corners: [Vec3; 3]) -> Option<Intersection> {
     if rounded.is_inside() { rounded.hit(Rounded::error) } else { None }
 }
 
-/// The same where [`Bounded::certain`](crate::filter::Bounded::certain) has shown that it is one, and `width` is that of its bounds of t:
-/// those of det and e2.q are 2^29 times ours.
+/// The same where [`Bounded::certain`](crate::filter::Bounded::certain) has shown that it is one, and `width` is
+/// that of its bounds of t: those of det and e2.q are 2^29 times ours.
 #[inline(always)]
 pub(crate) fn known_hit(ray: &Ray, corners: [Vec3; 3], width: f32) -> Option<Intersection> {
     let error = f64::from(width) * SHARE;

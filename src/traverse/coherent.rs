@@ -9,7 +9,8 @@
 //! 3. the cluster's eight triangles against the [`Bundle`] of all lines,
 //! 4. one triangle against eight rays ([`Prepared`]).
 //!
-//! Most hits are decided last, eight rays at a time ([`Nearest`](super::nearest::Nearest)). Where fewer than [`MANY`] rays of a packet meet a box, the cluster is tested ray by ray instead of 3 and 4.
+//! Most hits are decided last, eight rays at a time ([`Nearest`](super::nearest::Nearest)). Where fewer than
+//! [`MANY`] rays of a packet meet a box, the cluster is tested ray by ray instead of 3 and 4.
 //!
 //! Source: I. Wald, T. Ize, A. Kensler, A. Knoll, S. G. Parker, "Ray Tracing Animated Scenes using Coherent
 //! Grid Traversal", 2006, for walking slices with a frustum; the steps are ours.

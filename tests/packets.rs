@@ -32,6 +32,28 @@ fn companions_of_hazards_on_small_scenes() {
     }
 }
 
+/// A hit counts up to the last bit of t.
+#[test]
+fn intervals_that_end_at_a_hit() {
+    for kind in MeshKind::ALL {
+        let (vertices, triangles) = random_mesh(3, kind);
+        let mesh = TriMesh::new(&vertices, &triangles).unwrap();
+        let scene = Scene::build(&mesh, &Default::default()).unwrap();
+        let camera = RaySet::Camera.rays(&mesh, 3, 256);
+        let ends = [f32::next_down, |t| t, f32::next_up];
+        let rays: Vec<Ray> = (0..)
+            .zip(&camera)
+            .filter_map(|(i, ray)| {
+                let hit = scene.closest(ray);
+                let end = ends[i % 3](hit.t);
+                let interval = if i % 2 == 0 { (0.0, end) } else { (end, f32::INFINITY) };
+                hit.is_hit().then(|| ray.with_interval(interval.0, interval.1))
+            })
+            .collect();
+        Agreement { exact: 0, decorated: 0, ..Agreement::quick() }.assert(&mesh, &rays);
+    }
+}
+
 #[test]
 fn every_instruction_set() {
     let (vertices, triangles) = random_mesh(5, MeshKind::ALL[0]);

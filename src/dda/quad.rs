@@ -3,7 +3,9 @@
 //! The operations and their order are those of [`Path::clip`](super::Path::clip) and [`Dda::new`], which have an
 //! axis a lane, so that errors are the same.
 
-use super::{Clock, Dda, EARLY, HALF_ULP, LEAST, LEAST_SPEED, NEAR, ROUNDING, Steps, integer};
+use super::clock::{Clock, HALF_ULP, LEAST};
+use super::path::{LEAST_SPEED, NEAR};
+use super::{Dda, EARLY, ROUNDING, Steps, integer};
 use crate::arena::{Grid, GridAxes};
 use crate::lanes::{Lanes, axes};
 use crate::ray::Ray;
@@ -238,6 +240,12 @@ mod tests {
                         assert_eq!((dda.exit, dda.voxel), (dda4.exit, dda4.voxel), "{:?}", rays[i]);
                         assert_eq!(steps, steps4, "{:?}", rays[i]);
                         assert_eq!((path.octant, path.clock), (quad.octant(i), quad.clock(i)), "{:?}", rays[i]);
+                        let (slope, delay) = (path.slope(lanes), path.delay(lanes, &grid));
+                        let (slope, delay) = (lanes.store4(slope), lanes.store4(delay));
+                        for axis in 0..3 {
+                            let alone = (slope[axis] as f32, delay[axis] as f32);
+                            assert_eq!(alone, (quad.slope(axis, i), quad.delay(axis, i)), "{:?}", rays[i]);
+                        }
                         entering += 1;
                     }
                 });

@@ -2,6 +2,7 @@
 
 use super::hybrid::{Hybrid, Start};
 use super::leaf::LeafTest;
+use super::leaves_out_bricks;
 use crate::arena::{Arena, Form};
 use crate::dda::Quad;
 use crate::descent::Walk;
@@ -58,7 +59,7 @@ pub(crate) fn batch<Q: PerRay>(isa: Isa, arena: &Arena, walk: Walk, rays: &[Ray]
     let batch = Batch { isa, arena, walk };
     if arena.form != Form::Bricks {
         rays.iter().zip(answers).for_each(|(ray, answer)| *answer = batch.alone::<Q>(ray));
-    } else if arena.bricks.is_empty() && walk == Walk::Special {
+    } else if leaves_out_bricks(arena, walk) {
         dispatch!(isa, lanes => batch.run::<false, _, Q>(lanes, rays, answers));
     } else {
         dispatch!(isa, lanes => batch.run::<true, _, Q>(lanes, rays, answers));

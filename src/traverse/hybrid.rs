@@ -45,11 +45,8 @@ impl<L: Lanes> Start<L> {
     #[inline(always)]
     fn of(lanes: L, path: &Path<L>, grid: &Grid) -> Self {
         let (dda, steps) = Dda::new(lanes, path, grid);
-        let slope = lanes.select4(path.mirrored, -path.width, path.width);
-        let dims = lanes.load4(&grid.axes.dims);
-        let delay = -slope * lanes.select4(path.mirrored, dims - path.origin, path.origin);
         let (octant, clock) = (path.octant, path.clock);
-        let (slope, delay) = (rounded(lanes, slope), rounded(lanes, delay));
+        let (slope, delay) = (rounded(lanes, path.slope(lanes)), rounded(lanes, path.delay(lanes, grid)));
         Self { dda, steps, octant, clock, slope, delay }
     }
 

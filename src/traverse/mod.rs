@@ -77,12 +77,18 @@ pub(crate) trait Walker {
     fn walk<L: Lanes, V: Visit>(lanes: L, arena: &Arena, path: &Path<L>, visit: &mut V) -> ControlFlow<()>;
 }
 
+/// Whether the walk of a hybrid is the one without bricks.
+#[inline(always)]
+fn leaves_out_bricks(arena: &Arena, walk: Walk) -> bool {
+    arena.bricks.is_empty() && walk == Walk::Special
+}
+
 /// Runs `$body` with `$walker` as the [`Walker`] of an arena: each in a function of its own, which the
 /// compiler finds registers for.
 macro_rules! dispatch_walk {
     ($arena:expr, $walk:expr, $walker:ident => $body:expr) => {
         dispatch_walk!(@ $arena, $walk, $walker, $body,
-            (Form::Bricks, Walk::Special) if $arena.bricks.is_empty() => Hybrid<false>,
+            (Form::Bricks, _) if leaves_out_bricks($arena, $walk) => Hybrid<false>,
             (Form::Bricks, _) => Hybrid<true>,
             (Form::Lists { divisions: 2 }, Walk::Special) => Octree,
             (Form::BRUTE, _) if $arena.is_brute() => Brute,

@@ -72,10 +72,21 @@ impl Nearest {
         self.prim[lane] != u32::MAX
     }
 
-    /// Notes a hit of which nothing else is asked.
+    /// Whether there is a hit that is still to be decided.
     #[inline(always)]
-    pub(crate) fn note(&mut self, lane: usize, prim: u32) {
-        self.prim[lane] = prim;
+    fn is_pending(&self, lane: usize) -> bool {
+        self.source[lane].cluster != u32::MAX
+    }
+
+    /// Notes a hit of which nothing else is asked, which is certain, t between two bounds. `None` where only a
+    /// decision tells whether it is within the interval.
+    #[inline(always)]
+    pub(crate) fn note(&mut self, lane: usize, [_, high]: [f32; 2], prim: u32) -> Option<bool> {
+        let within = high <= self.t[lane];
+        if within {
+            self.prim[lane] = prim;
+        }
+        within.then_some(true)
     }
 
     /// Takes a hit that is certain, t between `low` and `high`, if it is closer. `None` where only decisions tell
@@ -106,7 +117,7 @@ impl Nearest {
         at: Intersection,
         prim: u32,
     ) -> bool {
-        if self.source[lane].cluster != u32::MAX && at.t >= self.low[lane] {
+        if self.is_pending(lane) && at.t >= self.low[lane] {
             self.settle(arena, ray, lane);
         }
         let closer = (at.t, prim) < (self.t[lane], self.prim[lane]);
@@ -150,8 +161,8 @@ impl Nearest {
         let mut corners = [[[0.0; WIDTH]; 3]; 3];
         let mut width = [0.0; WIDTH];
         for lane in 0..WIDTH {
-            let Source { cluster, lane: slot } = self.source[lane];
-            if cluster != u32::MAX {
+            if self.is_pending(lane) {
+                let Source { cluster, lane: slot } = self.source[lane];
                 left |= 1 << lane;
                 width[lane] = self.t[lane] - self.low[lane];
                 let triangle = arena.clusters[cluster as usize].triangle(slot as usize);

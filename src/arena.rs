@@ -260,8 +260,14 @@ impl Arena {
     /// The box around all triangles.
     #[cfg(any(feature = "file", all(test, feature = "oracle")))]
     pub(crate) fn bounds(&self) -> Aabb {
-        let boxes = self.clusters.iter().map(|cluster| cluster.bounds(cluster.occupied()));
-        boxes.fold(Aabb::EMPTY, Aabb::union)
+        use crate::lanes::{Isa, dispatch};
+        dispatch!(Isa::detect(), lanes => {
+            let boxes = self.clusters.iter().map(
+                #[inline(always)]
+                |cluster| cluster.bounds(lanes, cluster.occupied()),
+            );
+            boxes.fold(Aabb::EMPTY, Aabb::union)
+        })
     }
 
     /// Bytes by kind.

@@ -4,7 +4,7 @@
 //! them. Each triangle lives in one cluster; voxels refer to clusters.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{BVec4A, Vec3, Vec4};
+use glam::{Vec3, Vec4};
 
 use crate::aabb::Aabb;
 use crate::filter::{RayLanes, Scale, candidates};
@@ -43,16 +43,22 @@ impl Cluster {
     /// Where there are none or more than eight.
     pub fn new(triangles: &[(u32, [Vec3; 3])]) -> Self {
         assert!((1..=WIDTH).contains(&triangles.len()), "a cluster holds one to eight triangles");
+        Self::gather(triangles.len(), |lane| triangles[lane])
+    }
+
+    /// Gathers one to eight triangles.
+    #[inline(always)]
+    pub(crate) fn gather(len: usize, triangle: impl Fn(usize) -> (u32, [Vec3; 3])) -> Self {
         let mut cluster = Self { corners: [[[0.0; WIDTH]; 3]; 3], ids: [Self::NO_TRIANGLE; WIDTH] };
         for lane in 0..WIDTH {
-            let (id, corners) = triangles.get(lane).unwrap_or(&triangles[0]);
-            for (corner, position) in corners.iter().enumerate() {
+            let (id, corners) = triangle(if lane < len { lane } else { 0 });
+            for corner in 0..3 {
                 for axis in 0..3 {
-                    cluster.corners[corner][axis][lane] = position[axis];
+                    cluster.corners[corner][axis][lane] = corners[corner][axis];
                 }
             }
-            if lane < triangles.len() {
-                cluster.ids[lane] = *id;
+            if lane < len {
+                cluster.ids[lane] = id;
             }
         }
         cluster
@@ -102,20 +108,27 @@ impl Cluster {
     }
 
     /// The box around the triangles of the lanes in `mask`.
-    pub(crate) fn bounds(&self, mask: u8) -> Aabb {
-        let mut bounds = Aabb::EMPTY;
-        for axis in 0..3 {
-            let (mut lo, mut hi) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
-            for half in [0, 4] {
-                let [a, b, c] = self.corners.each_ref().map(|corner| Vec4::from_slice(&corner[axis][half..]));
-                let bit = |lane: usize| mask >> (half + lane) & 1 != 0;
-                let keep = BVec4A::new(bit(0), bit(1), bit(2), bit(3));
-                lo = lo.min(Vec4::select(keep, a.min(b).min(c), Vec4::INFINITY));
-                hi = hi.max(Vec4::select(keep, a.max(b).max(c), Vec4::NEG_INFINITY));
-            }
-            bounds.lo[axis] = lo.min_element();
-            bounds.hi[axis] = hi.max_element();
-        }
-        bounds
+    #[inline(always)]
+    pub(crate) fn bounds<L: Lanes>(&self, lanes: L, mask: u8) -> Aabb {
+        bounds(lanes, &self.lanes(lanes), mask)
     }
+}
+
+/// The box around the triangles of the lanes in `mask`.
+#[inline(always)]
+pub(crate) fn bounds<L: Lanes>(lanes: L, corners: &[Vec3Lanes<L>; 3], mask: u8) -> Aabb {
+    let mut beyond = [0.0; WIDTH];
+    for lane in 0..WIDTH {
+        beyond[lane] = if mask >> lane & 1 != 0 { 0.0 } else { f32::INFINITY };
+    }
+    let beyond = lanes.load(&beyond);
+    let mut bounds = Aabb::EMPTY;
+    for axis in 0..3 {
+        let [a, b, c] = [corners[0][axis], corners[1][axis], corners[2][axis]];
+        let lo = lanes.store(lanes.min(lanes.min(a, b), c) + beyond);
+        let hi = lanes.store(lanes.max(lanes.max(a, b), c) - beyond);
+        bounds.lo[axis] = Vec4::from_slice(&lo[..4]).min(Vec4::from_slice(&lo[4..])).min_element();
+        bounds.hi[axis] = Vec4::from_slice(&hi[..4]).max(Vec4::from_slice(&hi[4..])).max_element();
+    }
+    bounds
 }

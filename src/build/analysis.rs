@@ -1,9 +1,10 @@
 //! What the phases of the build need to know of a mesh: bounds, zero areas, planes, crowds.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, UVec3, Vec3, Vec4};
 
 use super::grid;
 use crate::aabb::Aabb;
+use crate::arena::Grid;
 use crate::exact::{self, Difference};
 use crate::mesh::TriMesh;
 use crate::parallel;
@@ -16,6 +17,8 @@ pub(crate) struct Analysis {
     pub(crate) boxes: Vec<Aabb>,
     /// The box around all.
     pub(crate) bounds: Aabb,
+    /// The box around the centres of their boxes.
+    pub(crate) centers: Aabb,
 }
 
 impl Analysis {
@@ -25,26 +28,94 @@ impl Analysis {
             let corners = mesh.corners(i);
             if is_degenerate(corners) { Aabb::EMPTY } else { Aabb::around(corners) }
         });
-        if boxes.contains(&Aabb::EMPTY) {
+        let mut around = Around::all(&boxes);
+        if around.any_empty {
             triangles.retain(|&i| boxes[i as usize] != Aabb::EMPTY);
             boxes.retain(|&b| b != Aabb::EMPTY);
+            around = Around::all(&boxes);
         }
-        let bounds = boxes.iter().fold(Aabb::EMPTY, |a, &b| a.union(b));
-        Self { triangles, boxes, bounds }
+        let Around { bounds, centers, .. } = around;
+        Self { triangles, boxes, bounds, centers }
     }
 
     /// How many triangles have their centre in each voxel of a grid of about so many voxels.
     pub(crate) fn occupants(&self, voxels: f64) -> Vec<u32> {
         let grid = grid::cubic(&self.bounds, voxels);
-        let strides = grid.strides();
-        let voxel = |b: &Aabb| -> u32 {
-            let center = b.center();
-            let at = |axis: usize| ((f64::from(center[axis]) - grid.lo[axis]) * grid.axes.per_length) as u32;
-            (0..3).map(|axis| at(axis).min(grid.dims[axis] - 1) * strides[axis]).sum()
-        };
+        let places = Places::new(&grid);
         let mut occupants = vec![0; grid.len()];
-        parallel::map(&self.boxes, voxel).into_iter().for_each(|i| occupants[i as usize] += 1);
+        let at = parallel::map(&self.boxes, |b| places.of(b));
+        at.into_iter().for_each(|i| occupants[i as usize] += 1);
         occupants
+    }
+}
+
+/// The boxes around boxes and around their centres.
+#[derive(Clone, Copy)]
+pub(super) struct Around {
+    pub(super) bounds: Aabb,
+    pub(super) centers: Aabb,
+    any_empty: bool,
+}
+
+impl Around {
+    /// Around many boxes. The centres mean nothing where a box is empty.
+    fn all(boxes: &[Aabb]) -> Self {
+        let portions: Vec<&[Aabb]> = boxes.chunks(1 << 12).collect();
+        let none = Self { bounds: Aabb::EMPTY, centers: Aabb::EMPTY, any_empty: false };
+        parallel::map(&portions, |boxes| Self::new(boxes.iter())).into_iter().fold(none, |a, b| Self {
+            bounds: a.bounds.union(b.bounds),
+            centers: a.centers.union(b.centers),
+            any_empty: a.any_empty || b.any_empty,
+        })
+    }
+
+    pub(super) fn new<'a>(boxes: impl Iterator<Item = &'a Aabb>) -> Self {
+        // On four lanes, as minima and maxima of single floats are several instructions each, for NaN.
+        let (mut lo, mut hi, mut any_empty) = (Vec4::INFINITY, Vec4::NEG_INFINITY, false);
+        let (mut first, mut last) = (lo, hi);
+        for b in boxes {
+            let (l, h) = (b.lo.extend(0.0), b.hi.extend(0.0));
+            let center = l * 0.5 + h * 0.5;
+            (lo, hi) = (lo.min(l), hi.max(h));
+            (first, last) = (first.min(center), last.max(center));
+            any_empty |= b.lo.x > b.hi.x;
+        }
+        let bounds = Aabb { lo: lo.truncate(), hi: hi.truncate() };
+        Self { bounds, centers: Aabb { lo: first.truncate(), hi: last.truncate() }, any_empty }
+    }
+}
+
+/// Which voxel of a grid the centre of a box is in, but for rounding.
+pub(super) struct Places {
+    lo: Vec4,
+    per_length: f32,
+    last: Vec4,
+    strides: [u32; 3],
+}
+
+impl Places {
+    /// From here on f32 are whole numbers: adding it rounds to the last bits.
+    const WHOLE: f32 = (1u32 << 23) as f32;
+
+    pub(super) fn new(grid: &Grid) -> Self {
+        let [x, y, z] = grid.lo.map(|x| x as f32);
+        let last = UVec3::from_array(grid.dims) - 1;
+        Self {
+            lo: Vec4::new(x, y, z, 0.0),
+            per_length: grid.axes.per_length as f32,
+            last: last.as_vec3().extend(0.0),
+            strides: grid.strides(),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn of(&self, b: &Aabb) -> u32 {
+        let center = b.lo.extend(0.0) * 0.5 + b.hi.extend(0.0) * 0.5;
+        let place = (center - self.lo) * self.per_length - 0.5;
+        // What is not a number counts as 0.
+        let place = place.max(Vec4::ZERO).min(self.last) + Self::WHOLE;
+        let [x, y, z, _] = place.to_array().map(|x| x.to_bits() - Self::WHOLE.to_bits());
+        x * self.strides[0] + y * self.strides[1] + z * self.strides[2]
     }
 }
 

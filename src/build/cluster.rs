@@ -13,9 +13,7 @@
 
 use std::ops::Range;
 
-use glam::{UVec3, Vec3};
-
-use super::analysis::Analysis;
+use super::analysis::{Analysis, Around, Places};
 use super::grid;
 use super::sah::{self, Member};
 use crate::aabb::Aabb;
@@ -34,7 +32,7 @@ pub(crate) fn clusters(mesh: &TriMesh<'_>, analysis: &Analysis) -> Vec<Cluster> 
     let boxes = &analysis.boxes;
     let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
     let mut ends = vec![false; order.len()];
-    arrange(boxes, &mut order, &mut ends);
+    arrange(boxes, &analysis.centers, &mut order, &mut ends);
     parallel::for_each(runs_mut(&mut order, &mut ends), |(run, ends)| {
         let mut members: Vec<Member> = run.iter().map(|&i| Member::new(i, &boxes[i as usize])).collect();
         sah::split(&mut members, ends, &|_: &Member| 1, WIDTH);
@@ -63,12 +61,11 @@ fn runs_mut<'a>(mut order: &'a mut [u32], mut ends: &'a mut [bool]) -> Vec<(&'a 
 }
 
 /// Orders triangles by runs of neighbours and marks the last of each run.
-fn arrange(boxes: &[Aabb], order: &mut [u32], ends: &mut [bool]) {
-    const CROWDED: usize = 1024;
-    let (cells, sorted) = sort_by_cell(boxes, order);
-    let bounds = |cell: &Range<usize>| {
-        sorted[cell.clone()].iter().fold(Aabb::EMPTY, |all, &i| all.union(boxes[i as usize]))
-    };
+fn arrange(boxes: &[Aabb], centers: &Aabb, order: &mut [u32], ends: &mut [bool]) {
+    const CROWDED: usize = 256;
+    let (cells, sorted) = sort_by_cell(boxes, centers, order);
+    let bounds =
+        |cell: &Range<usize>| Around::new(sorted[cell.clone()].iter().map(|&i| &boxes[i as usize])).bounds;
     let around = parallel::map(&cells, bounds);
     let mut groups: Vec<Member> = (0..).zip(&around).map(|(i, b)| Member::new(i, b)).collect();
     let mut last = vec![false; groups.len()];
@@ -80,7 +77,9 @@ fn arrange(boxes: &[Aabb], order: &mut [u32], ends: &mut [bool]) {
         end += cell.len();
         if last {
             if end - start > CROWDED && end - start < order.len() {
-                arrange(boxes, &mut order[start..end], &mut ends[start..end]);
+                let crowd = &mut order[start..end];
+                let centers = Around::new(crowd.iter().map(|&i| &boxes[i as usize])).centers;
+                arrange(boxes, &centers, crowd, &mut ends[start..end]);
             }
             ends[end - 1] = true;
             start = end;
@@ -90,15 +89,10 @@ fn arrange(boxes: &[Aabb], order: &mut [u32], ends: &mut [bool]) {
 
 /// The triangles sorted by the cell of a grid that their centre is in, and the range of each cell that has
 /// any. Counting sort.
-fn sort_by_cell(boxes: &[Aabb], order: &[u32]) -> (Vec<Range<usize>>, Vec<u32>) {
-    let bounds = Aabb::around(order.iter().map(|&i| boxes[i as usize].center()));
-    let grid = grid::cubic(&bounds, order.len() as f64 / 4.0);
-    let (lo, scale) = (Vec3::from_array(grid.lo.map(|x| x as f32)), (1.0 / grid.cell) as f32);
-    let last = UVec3::from_array(grid.dims) - 1;
-    let cells = parallel::map(order, |&i| {
-        let at = ((boxes[i as usize].center() - lo) * scale).as_uvec3().min(last);
-        at.dot(UVec3::from_array(grid.strides()))
-    });
+fn sort_by_cell(boxes: &[Aabb], centers: &Aabb, order: &[u32]) -> (Vec<Range<usize>>, Vec<u32>) {
+    let grid = grid::cubic(centers, order.len() as f64 / 4.0);
+    let places = Places::new(&grid);
+    let cells = parallel::map(order, |&i| places.of(&boxes[i as usize]));
     let mut next = vec![0; grid.len()];
     cells.iter().for_each(|&cell| next[cell as usize] += 1);
     let mut ranges = Vec::new();
@@ -120,13 +114,8 @@ fn sort_by_cell(boxes: &[Aabb], order: &[u32]) -> (Vec<Range<usize>>, Vec<u32>) 
 fn gather(mesh: &TriMesh<'_>, analysis: &Analysis, run: &[u32]) -> Cluster {
     let mut ids = [u32::MAX; WIDTH];
     ids.iter_mut().zip(run).for_each(|(id, &i)| *id = analysis.triangles[i as usize]);
-    let ids = &mut ids[..run.len()];
-    ids.sort_unstable();
-    let mut triangles = [(u32::MAX, [Vec3::ZERO; 3]); WIDTH];
-    for (slot, &id) in triangles.iter_mut().zip(&*ids) {
-        *slot = (id, mesh.corners(id));
-    }
-    Cluster::new(&triangles[..run.len()])
+    ids[..run.len()].sort_unstable();
+    Cluster::gather(run.len(), |lane| (ids[lane], mesh.corners(ids[lane])))
 }
 
 #[cfg(test)]

@@ -41,7 +41,10 @@ fn build_in_pool(mesh: &TriMesh<'_>, options: &BuildOptions) -> Result<(Structur
     let analysis = Analysis::new(mesh);
     let structure = match options.structure {
         Some(structure) => structure,
-        None => Plan::new(&SceneProfile::of(&analysis, mesh.len()), options.forced).structure(),
+        None => {
+            let (crowding, _) = profile::crowding(&analysis);
+            Plan::of(analysis.triangles.len(), crowding, options.forced).structure()
+        }
     };
     Ok((structure, structured(mesh, &analysis, &structure, options)?))
 }

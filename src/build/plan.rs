@@ -108,7 +108,11 @@ impl Plan {
 
     /// What a scene needs, but for parts that are forced.
     pub fn new(profile: &SceneProfile, forced: Forced) -> Self {
-        let n = profile.triangles;
+        Self::of(profile.triangles, profile.crowding, forced)
+    }
+
+    /// The same from what counts of the profile.
+    pub(super) fn of(n: usize, crowding: f64, forced: Forced) -> Self {
         let many = n > Self::FEW;
         let decision = |part, needed, reason| {
             let force = forced.get(part);
@@ -129,7 +133,6 @@ impl Plan {
                 format!("{n} triangles: above {small} smaller voxels cost more memory than they save tests")
             }
         };
-        let crowding = profile.crowding;
         let bricks = match crowding > crowd {
             true => format!(
                 "{crowding:.0} triangles around an average one: above {crowd:.0} dividing voxels pays"

@@ -55,8 +55,7 @@ impl SceneProfile {
         let longest = extent.into_iter().fold(0.0, f64::max);
         let over_longest = |length: f64| if longest > 0.0 { length / longest } else { 0.0 };
         let farthest = f64::from(bounds.lo.abs().max(bounds.hi.abs()).max_element());
-        let occupants = analysis.occupants(triangles as f64 / 80.0);
-        let pairs: f64 = occupants.iter().map(|&n| f64::from(n) * f64::from(n)).sum();
+        let (crowding, evenness) = crowding(analysis);
         Self {
             triangles,
             degenerate: all - triangles,
@@ -64,10 +63,18 @@ impl SceneProfile {
             flatness: over_longest(extent.into_iter().fold(longest, f64::min)),
             magnitude: over_longest(farthest),
             sizes: sizes(analysis, longest),
-            crowding: pairs / triangles.max(1) as f64,
-            evenness: share_occupied(&occupants),
+            crowding,
+            evenness,
         }
     }
+}
+
+/// [`SceneProfile::crowding`] and [`SceneProfile::evenness`].
+pub(super) fn crowding(analysis: &Analysis) -> (f64, f64) {
+    let triangles = analysis.triangles.len();
+    let occupants = analysis.occupants(triangles as f64 / 80.0);
+    let pairs: f64 = occupants.iter().map(|&n| f64::from(n) * f64::from(n)).sum();
+    (pairs / triangles.max(1) as f64, share_occupied(&occupants))
 }
 
 /// The share of numbers above 0.

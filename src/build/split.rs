@@ -29,8 +29,7 @@ pub(crate) fn build<L: Lanes + Sync, P: Policy>(
     clusters: Vec<Cluster>,
     limits: Limits,
 ) -> Result<Arena, BuildError> {
-    let indices: Vec<u32> = (0..clusters.len() as u32).collect();
-    let whole = parallel::map(&indices, |&i| Item::whole(i, &clusters));
+    let whole = whole_items(lanes, &clusters);
     let grid = place_grid(policy.grid(), &whole, &limits);
     // Before it is there: a word, and where the items of a voxel start.
     let voxels = grid.len() * (size_of::<VoxelWord>() + size_of::<usize>());
@@ -44,6 +43,17 @@ pub(crate) fn build<L: Lanes + Sync, P: Policy>(
     piece::join(&mut arena, pieces?)?;
     limits.check(arena.bytes())?;
     Ok(arena)
+}
+
+/// All clusters.
+fn whole_items<L: Lanes + Sync>(lanes: L, clusters: &[Cluster]) -> Vec<Item> {
+    let indices: Vec<u32> = (0..clusters.len() as u32).collect();
+    parallel::map(&indices, |&i| {
+        lanes.vectorize(
+            #[inline(always)]
+            || Item::whole(lanes, i, &clusters[i as usize]),
+        )
+    })
 }
 
 /// What bounds a build.

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 
 use crate::aabb::Aabb;
 use crate::arena::Grid;
-use crate::cluster::Cluster;
-use crate::lanes::{Lanes, Vec3Lanes, WIDTH};
+use crate::cluster::{Cluster, bounds};
+use crate::lanes::{Lanes, WIDTH};
 use crate::overlap::overlapping;
 
 /// A cluster in a voxel.
@@ -25,9 +25,10 @@ impl Item {
     pub(crate) const NONE: Self = Self { bounds: Aabb::EMPTY, cluster: 0, mask: 0 };
 
     /// A whole cluster.
-    pub(crate) fn whole(cluster: u32, clusters: &[Cluster]) -> Self {
-        let mask = clusters[cluster as usize].occupied();
-        Self { bounds: clusters[cluster as usize].bounds(mask), cluster, mask }
+    #[inline(always)]
+    pub(crate) fn whole<L: Lanes>(lanes: L, index: u32, cluster: &Cluster) -> Self {
+        let mask = cluster.occupied();
+        Self { bounds: cluster.bounds(lanes, mask), cluster: index, mask }
     }
 }
 
@@ -90,7 +91,7 @@ impl Cube {
 /// The voxels of `grid`, enlarged by `margin`, that a box overlaps.
 pub(super) fn range(bounds: &Aabb, grid: &Grid, margin: f64) -> [Range<u32>; 3] {
     std::array::from_fn(|axis| {
-        let index = |x: f64| ((x - grid.lo[axis]) / grid.cell) as u32;
+        let index = |x: f64| ((x - grid.lo[axis]) * grid.axes.per_length) as u32;
         let last = grid.dims[axis] - 1;
         let lo = index(f64::from(bounds.lo[axis].next_down()) - margin).min(last);
         let hi = index(f64::from(bounds.hi[axis].next_up()) + margin).min(last);
@@ -129,23 +130,4 @@ pub(super) fn scatter<L: Lanes>(
             }
         }
     }
-}
-
-/// The box around the triangles of the lanes in `mask`.
-#[inline(always)]
-fn bounds<L: Lanes>(lanes: L, corners: &[Vec3Lanes<L>; 3], mask: u8) -> Aabb {
-    let mut beyond = [0.0; WIDTH];
-    for lane in 0..WIDTH {
-        beyond[lane] = if mask >> lane & 1 != 0 { 0.0 } else { f32::INFINITY };
-    }
-    let beyond = lanes.load(&beyond);
-    let mut bounds = Aabb::EMPTY;
-    for axis in 0..3 {
-        let [a, b, c] = [corners[0][axis], corners[1][axis], corners[2][axis]];
-        let lo = lanes.store(lanes.min(lanes.min(a, b), c) + beyond);
-        let hi = lanes.store(lanes.max(lanes.max(a, b), c) - beyond);
-        bounds.lo[axis] = Vec4::from_slice(&lo[..4]).min(Vec4::from_slice(&lo[4..])).min_element();
-        bounds.hi[axis] = Vec4::from_slice(&hi[..4]).max(Vec4::from_slice(&hi[4..])).max_element();
-    }
-    bounds
 }

@@ -74,7 +74,11 @@ impl<'a> TriMesh<'a> {
     /// Where `triangle` is not below [`TriMesh::len`].
     #[inline]
     pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
-        let [a, b, c] = self.triangles[triangle as usize];
+        self.corners_of(self.triangles[triangle as usize])
+    }
+
+    #[inline(always)]
+    pub(crate) fn corners_of(&self, [a, b, c]: [u32; 3]) -> [Vec3; 3] {
         // The function of arrays is not inlined, which loops over triangles would feel.
         let vertex = |i: u32| Vec3::from_array(self.vertices[i as usize]);
         [vertex(a), vertex(b), vertex(c)]

@@ -11,8 +11,8 @@ use crate::parallel;
 
 /// The triangles that can be hit, and how they lie.
 pub(crate) struct Analysis {
-    /// Triangles whose area is not zero.
-    pub(crate) triangles: Vec<u32>,
+    /// The triangles whose area is not zero, where these aren't all.
+    ids: Option<Vec<u32>>,
     /// The box of each of them.
     pub(crate) boxes: Vec<Aabb>,
     /// The box around all.
@@ -23,19 +23,34 @@ pub(crate) struct Analysis {
 
 impl Analysis {
     pub(crate) fn new(mesh: &TriMesh<'_>) -> Self {
-        let mut triangles: Vec<u32> = (0..mesh.len() as u32).collect();
-        let mut boxes = parallel::map(&triangles, |&i| {
-            let corners = mesh.corners(i);
+        let mut boxes = parallel::map(mesh.triangles(), |&triangle| {
+            let corners = mesh.corners_of(triangle);
             if is_degenerate(corners) { Aabb::EMPTY } else { Aabb::around(corners) }
         });
-        let mut around = Around::all(&boxes);
+        let (mut around, mut ids) = (Around::all(&boxes), None);
         if around.any_empty {
-            triangles.retain(|&i| boxes[i as usize] != Aabb::EMPTY);
+            ids = Some((0..).zip(&boxes).filter(|(_, b)| **b != Aabb::EMPTY).map(|(i, _)| i).collect());
             boxes.retain(|&b| b != Aabb::EMPTY);
             around = Around::all(&boxes);
         }
         let Around { bounds, centers, .. } = around;
-        Self { triangles, boxes, bounds, centers }
+        Self { ids, boxes, bounds, centers }
+    }
+
+    /// How many triangles there are.
+    pub(crate) fn len(&self) -> usize {
+        self.boxes.len()
+    }
+
+    /// Which triangle of the mesh the one of a box is.
+    #[inline(always)]
+    pub(crate) fn id(&self, i: u32) -> u32 {
+        self.ids.as_ref().map_or(i, |ids| ids[i as usize])
+    }
+
+    /// The triangles, as those of the mesh.
+    pub(crate) fn ids(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..self.len() as u32).map(|i| self.id(i))
     }
 
     /// How many triangles have their centre in each voxel of a grid of about so many voxels.
@@ -43,8 +58,7 @@ impl Analysis {
         let grid = grid::cubic(&self.bounds, voxels);
         let places = Places::new(&grid);
         let mut occupants = vec![0; grid.len()];
-        let at = parallel::map(&self.boxes, |b| places.of(b));
-        at.into_iter().for_each(|i| occupants[i as usize] += 1);
+        self.boxes.iter().for_each(|b| occupants[places.of(b) as usize] += 1);
         occupants
     }
 }
@@ -148,7 +162,7 @@ pub(crate) fn planes(mesh: &TriMesh<'_>, analysis: &Analysis) -> Vec<u32> {
     let size = analysis.bounds.extent().as_dvec3().max_element();
     let middle = analysis.bounds.center().as_dvec3();
     let mut keys: Vec<([i64; 4], u32)> =
-        analysis.triangles.iter().map(|&i| (plane_key(mesh.corners(i), middle, size), i)).collect();
+        analysis.ids().map(|i| (plane_key(mesh.corners(i), middle, size), i)).collect();
     keys.sort_unstable();
     let mut planes = vec![u32::MAX; mesh.len()];
     let mut plane = 0;
@@ -189,7 +203,7 @@ mod tests {
         let v = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 1.0, 1.0], [0.0, 1.0, 1.0], [0.0, 0.0, 0.0]];
         let mesh = TriMesh::new(&v, &[[0, 1, 2], [0, 3, 2], [4, 1, 2], [0, 0, 1]]).unwrap();
         let analysis = Analysis::new(&mesh);
-        assert_eq!(analysis.triangles, [0, 1, 2]);
+        assert!(analysis.ids().eq([0, 1, 2]));
         let planes = planes(&mesh, &analysis);
         assert_eq!(planes[0], planes[1]);
         assert_ne!(planes[0], planes[2]);

@@ -75,11 +75,15 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
     }
 
     /// Makes a voxel of the top grid.
-    pub(super) fn top_voxel(&mut self, index: [u32; 3], items: &[Item]) -> Result<(), BuildError> {
-        self.items.extend_from_slice(items);
-        let cube = Cube::of(self.space.grid, index);
-        let leaf_cost = self.space.policy.leaf_cost(&self.view(0..items.len(), cube));
-        let word = self.voxel(0..items.len(), cube, leaf_cost, 0)?.0;
+    pub(super) fn top_voxel(
+        &mut self,
+        index: [u32; 3],
+        items: impl Iterator<Item = Item>,
+    ) -> Result<(), BuildError> {
+        self.items.extend(items);
+        let (items, cube) = (0..self.items.len(), Cube::of(self.space.grid, index));
+        let leaf_cost = self.space.policy.leaf_cost(&self.view(items.clone(), cube));
+        let word = self.voxel(items, cube, leaf_cost, 0)?.0;
         self.items.clear();
         self.piece.top.push(word);
         Ok(())
@@ -144,7 +148,7 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
         self.list_parts(range.clone(), &parts)?;
         let mut divided = None;
         if self.gains(range) {
-            sort(self.parts.iter(), parts.len(), &mut self.items, &mut self.starts);
+            sort(self.parts.iter().copied(), parts.len(), Item::NONE, &mut self.items, &mut self.starts);
             let costs = self.costs.len();
             if self.least_cost(&parts, start) < leaf_cost {
                 divided = Some(self.node(&parts, start, costs, depth)?);

@@ -43,7 +43,7 @@ fn build_in_pool(mesh: &TriMesh<'_>, options: &BuildOptions) -> Result<(Structur
         Some(structure) => structure,
         None => {
             let (crowding, _) = profile::crowding(&analysis);
-            Plan::of(analysis.triangles.len(), crowding, options.forced).structure()
+            Plan::of(analysis.len(), crowding, options.forced).structure()
         }
     };
     Ok((structure, structured(mesh, &analysis, &structure, options)?))
@@ -99,7 +99,7 @@ fn finish<P: Policy>(
     };
     let limits = split::Limits {
         memory: options.memory_limit,
-        references: (1 << 16) + references * analysis.triangles.len(),
+        references: (1 << 16) + references * analysis.len(),
         margin,
         least_side,
         levels: levels.min(most_levels),

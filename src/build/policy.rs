@@ -42,7 +42,7 @@ pub(crate) struct Uniform {
 
 impl Uniform {
     pub(crate) fn new(params: &UniformParams, analysis: &Analysis) -> Self {
-        let target = f64::from(params.density) * analysis.triangles.len() as f64;
+        let target = f64::from(params.density) * analysis.len() as f64;
         Self { grid: grid::cubic(&analysis.bounds, target) }
     }
 }
@@ -70,8 +70,8 @@ impl Recursive {
     /// asks: the share of occupied voxels of a fine grid is the measure.
     pub(crate) fn new(params: &RecursiveParams, analysis: &Analysis) -> Self {
         let grid = if params.top_grid {
-            let even = analysis.triangles.len() as f64 / f64::from(params.threshold.max(1));
-            let occupants = analysis.occupants(analysis.triangles.len() as f64 / 8.0);
+            let even = analysis.len() as f64 / f64::from(params.threshold.max(1));
+            let occupants = analysis.occupants(analysis.len() as f64 / 8.0);
             grid::cubic(&analysis.bounds, 4.0 * even * share_occupied(&occupants))
         } else {
             grid::cube(&analysis.bounds)

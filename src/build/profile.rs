@@ -50,7 +50,7 @@ impl SceneProfile {
 
     /// The same for a mesh of `all` triangles that is analysed already.
     pub(super) fn of(analysis: &Analysis, all: usize) -> Self {
-        let (triangles, bounds) = (analysis.triangles.len(), analysis.bounds);
+        let (triangles, bounds) = (analysis.len(), analysis.bounds);
         let (_, extent) = grid::corner_and_extent(&bounds);
         let longest = extent.into_iter().fold(0.0, f64::max);
         let over_longest = |length: f64| if longest > 0.0 { length / longest } else { 0.0 };
@@ -71,7 +71,7 @@ impl SceneProfile {
 
 /// [`SceneProfile::crowding`] and [`SceneProfile::evenness`].
 pub(super) fn crowding(analysis: &Analysis) -> (f64, f64) {
-    let triangles = analysis.triangles.len();
+    let triangles = analysis.len();
     let occupants = analysis.occupants(triangles as f64 / 80.0);
     let pairs: f64 = occupants.iter().map(|&n| f64::from(n) * f64::from(n)).sum();
     (pairs / triangles.max(1) as f64, share_occupied(&occupants))

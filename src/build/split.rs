@@ -35,10 +35,13 @@ pub(crate) fn build<L: Lanes + Sync, P: Policy>(
     let voxels = grid.len() * (size_of::<VoxelWord>() + size_of::<usize>());
     limits.check(size_of_val(&*clusters) + size_of_val(&*whole) + voxels)?;
     let space = Space { lanes, policy, clusters: &clusters, grid: &grid, limits, held: AtomicUsize::new(0) };
-    let (items, starts) = sorted_items(&space, &whole)?;
+    let lists = listed(&space, &whole)?;
+    let (order, starts) = sorted(&lists, grid.len());
     let parts = portions(&starts);
     let pieces: Result<Vec<Piece>, _> =
-        parallel::map(&parts, |part| piece(&space, part.clone(), &items, &starts)).into_iter().collect();
+        parallel::map(&parts, |part| piece(&space, part.clone(), &lists, &order, &starts))
+            .into_iter()
+            .collect();
     let mut arena = Arena { clusters, ..Arena::new(grid, policy.form()) };
     piece::join(&mut arena, pieces?)?;
     limits.check(arena.bytes())?;
@@ -114,20 +117,30 @@ fn estimate(items: &[Item], grid: &Grid, limits: &Limits) -> f64 {
     parallel::map(&portions, |items| items.iter().map(voxels).sum::<f64>()).into_iter().sum()
 }
 
-/// The items of all voxels of the grid, and where those of each start, and the end.
-fn sorted_items<L: Lanes + Sync, P: Policy>(
-    space: &Space<'_, L, P>,
-    whole: &[Item],
-) -> Result<(Vec<Item>, Vec<usize>), BuildError> {
+/// Items with the voxels of the grid that they are in, by portions of the clusters.
+type Lists = Vec<Vec<(u32, Item)>>;
+
+fn listed<L: Lanes + Sync, P: Policy>(space: &Space<'_, L, P>, whole: &[Item]) -> Result<Lists, BuildError> {
     let portions: Vec<&[Item]> = whole.chunks(PORTION).collect();
-    let lists = parallel::map(&portions, |items| list(space, items));
-    let lists: Vec<Vec<(u32, Item)>> = lists.into_iter().collect::<Result<_, _>>()?;
+    let lists: Lists =
+        parallel::map(&portions, |items| list(space, items)).into_iter().collect::<Result<_, _>>()?;
     let listed = lists.iter().map(Vec::len).sum::<usize>();
-    let (mut items, mut starts) = (Vec::new(), Vec::new());
-    let work = listed * (size_of::<(u32, Item)>() + size_of::<Item>());
+    let work = listed * (size_of::<(u32, Item)>() + size_of::<Listed>());
     space.limits.check(size_of_val(space.clusters) + size_of_val(whole) + work)?;
-    sort(lists.iter().flatten(), space.grid.len(), &mut items, &mut starts);
-    Ok((items, starts))
+    Ok(lists)
+}
+
+/// One of the lists, and the place in it.
+type Listed = [u32; 2];
+
+/// What is listed in the order of its voxels, and where each of these starts, and the end.
+fn sorted(lists: &Lists, voxels: usize) -> (Vec<Listed>, Vec<usize>) {
+    let (mut order, mut starts) = (Vec::new(), Vec::new());
+    let places = lists.iter().enumerate().flat_map(|(list, items)| {
+        items.iter().enumerate().map(move |(i, (voxel, _))| (*voxel, [list as u32, i as u32]))
+    });
+    sort(places, voxels, [0; 2], &mut order, &mut starts);
+    (order, starts)
 }
 
 /// Lists the items with the voxels of the grid that they overlap.
@@ -154,28 +167,29 @@ fn list<L: Lanes + Sync, P: Policy>(
     Ok(list)
 }
 
-/// Sorts listed items by voxel, on top of `items`, and puts where those of each of the `voxels` start, and
+/// Sorts what is listed by voxel, on top of `sorted`, and puts where that of each of the `voxels` starts, and
 /// the end, on top of `starts`. Counting sort: within a voxel the order stays.
-pub(super) fn sort<'a>(
-    list: impl DoubleEndedIterator<Item = &'a (u32, Item)> + Clone,
+pub(super) fn sort<T: Copy>(
+    list: impl DoubleEndedIterator<Item = (u32, T)> + Clone,
     voxels: usize,
-    items: &mut Vec<Item>,
+    none: T,
+    sorted: &mut Vec<T>,
     starts: &mut Vec<usize>,
 ) {
     let base = starts.len();
     starts.resize(base + voxels + 1, 0);
     let starts = &mut starts[base..];
-    list.clone().for_each(|(voxel, _)| starts[*voxel as usize] += 1);
-    let mut end = items.len();
+    list.clone().for_each(|(voxel, _)| starts[voxel as usize] += 1);
+    let mut end = sorted.len();
     for start in &mut *starts {
         end += *start;
         *start = end;
     }
-    items.resize(end, Item::NONE);
+    sorted.resize(end, none);
     // From the last to the first, so that the end of each voxel moves to its start.
     for (voxel, item) in list.rev() {
-        starts[*voxel as usize] -= 1;
-        items[starts[*voxel as usize]] = *item;
+        starts[voxel as usize] -= 1;
+        sorted[starts[voxel as usize]] = item;
     }
 }
 
@@ -196,17 +210,20 @@ fn portions(starts: &[usize]) -> Vec<Range<usize>> {
 fn piece<L: Lanes + Sync, P: Policy>(
     space: &Space<'_, L, P>,
     voxels: Range<usize>,
-    items: &[Item],
+    lists: &Lists,
+    order: &[Listed],
     starts: &[usize],
 ) -> Result<Piece, BuildError> {
     let own = starts[voxels.end] - starts[voxels.start];
     // Each piece may have as many references for an item as the others.
-    let share = own as f64 / items.len().max(1) as f64;
+    let share = own as f64 / order.len().max(1) as f64;
     let mut divider = Divider::new(space, (share * space.limits.references as f64) as usize);
     let [nx, ny, _] = space.grid.dims;
     for i in voxels {
         let (x, yz) = (i as u32 % nx, i as u32 / nx);
-        divider.top_voxel([x, yz % ny, yz / ny], &items[starts[i]..starts[i + 1]])?;
+        let items =
+            order[starts[i]..starts[i + 1]].iter().map(|&[list, i]| lists[list as usize][i as usize].1);
+        divider.top_voxel([x, yz % ny, yz / ny], items)?;
     }
     Ok(divider.piece())
 }

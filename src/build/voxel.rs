@@ -88,13 +88,14 @@ impl Cube {
     }
 }
 
-/// The voxels of `grid`, enlarged by `margin`, that a box overlaps.
+/// The voxels of `grid`, enlarged by `margin` but for rounding in f64, that a box overlaps.
+#[inline(always)]
 pub(super) fn range(bounds: &Aabb, grid: &Grid, margin: f64) -> [Range<u32>; 3] {
     std::array::from_fn(|axis| {
         let index = |x: f64| ((x - grid.lo[axis]) * grid.axes.per_length) as u32;
         let last = grid.dims[axis] - 1;
-        let lo = index(f64::from(bounds.lo[axis].next_down()) - margin).min(last);
-        let hi = index(f64::from(bounds.hi[axis].next_up()) + margin).min(last);
+        let lo = index(f64::from(bounds.lo[axis]) - margin).min(last);
+        let hi = index(f64::from(bounds.hi[axis]) + margin).min(last);
         lo..hi + 1
     })
 }

@@ -1,5 +1,8 @@
 //! Builds and traces in turns, so that a disturbance of the machine meets all alike.
 
+use std::thread;
+use std::time::Duration;
+
 use octogrid::{Scene, TriMesh};
 
 use crate::clock::{Elapsed, time};
@@ -111,6 +114,8 @@ fn builds(
                 continue;
             }
             let prepared = contender.tracer.prepare(mesh, threads);
+            // Until the threads of the one before have gone to sleep: a library's may spin for a while.
+            thread::sleep(Duration::from_millis(20));
             let ((peer, elapsed), bytes) = on(threads, || memory::measure(|| time(prepared)));
             samples.push(elapsed);
             if threads == 1 && round == 0 {

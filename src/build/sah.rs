@@ -63,7 +63,7 @@ fn split_at<W: Weight>(members: &mut [Member], ends: &mut [bool], weight: &W, mo
         cheapest_plane::<BINS, W>(members, weight)
     };
     let middle = match plane {
-        Some(plane) if depth < MAX_UNEVEN_DEPTH => partition(members, plane.is_below()),
+        Some(plane) if depth < MAX_UNEVEN_DEPTH => partition(members, |member| plane.is_below(member)),
         _ => half(members.len()),
     };
     let serial = middle.min(members.len() - middle) < PARALLEL;
@@ -108,11 +108,10 @@ impl Binning {
         Self { start: lo, scale: Vec4::select(is_tried, scale, Vec4::ZERO) }
     }
 
-    /// The bin of a member along each axis, of `N`; the fourth means nothing.
+    /// The bin of a member along each axis, with [`Binning::WHOLE`] added; the fourth means nothing.
     #[inline(always)]
-    fn of<const N: usize>(&self, member: &Member) -> [usize; 4] {
-        let place = (member.center() - self.start) * self.scale + Vec4::splat(Self::WHOLE);
-        place.to_array().map(|x| x.to_bits() as usize % N)
+    fn of(&self, member: &Member) -> Vec4 {
+        (member.center() - self.start) * self.scale + Vec4::splat(Self::WHOLE)
     }
 }
 
@@ -124,14 +123,11 @@ struct Plane {
 }
 
 impl Plane {
-    /// As a comparison that takes as little as it needs of a member.
-    fn is_below(&self) -> impl Fn(&Member) -> bool + use<> {
-        let (axis, last) = (self.axis, self.bin as f32 + Binning::WHOLE);
-        let (start, scale) = (self.binning.start[axis], self.binning.scale[axis]);
-        move |member| {
-            let center = member.lo[axis] * 0.5 + member.hi[axis] * 0.5;
-            (center - start) * scale + Binning::WHOLE <= last
-        }
+    /// On all axes, as one that is chosen at run time would be a jump.
+    #[inline(always)]
+    fn is_below(&self, member: &Member) -> bool {
+        let last = Vec4::splat(self.bin as f32 + Binning::WHOLE);
+        self.binning.of(member).cmple(last).bitmask() >> self.axis & 1 != 0
     }
 }
 
@@ -162,7 +158,7 @@ fn cheapest_plane<const N: usize, W: Weight>(members: &[Member], weight: &W) -> 
     let binning = Binning::new(members, N);
     let mut bins = [[Bin::EMPTY; N]; 3];
     for member in members {
-        let of = binning.of::<N>(member);
+        let of = binning.of(member).to_array().map(|x| x.to_bits() as usize % N);
         let count = weight(member);
         for axis in 0..3 {
             if binning.scale[axis] > 0.0 {

@@ -13,7 +13,10 @@ use cases::{Case, Query, run};
 use glam::Vec3;
 use gungraun::{library_benchmark, library_benchmark_group, main};
 use octogrid::descent::{General, Halves, Walk, first_exit};
-use octogrid::{BuildOptions, Cluster, EdgeRule, Forced, Isa, Ray, RayPacket, Scene, Structure, intersect};
+use octogrid::{
+    BuildOptions, Cluster, EdgeRule, Forced, Hit, Isa, Ray, RayPacket, Scene, Structure, intersect,
+};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// When a ray enters a divided voxel: exits, widths, time, rising axes.
 type Entry = ([f64; 3], [f64; 3], f64, u32);
@@ -295,6 +298,41 @@ fn sixteen_rays((scene, packets): (Scene, [RayPacket; 2])) -> (u32, Scene) {
     (black_box(black_box(&scene).closest_packet(black_box(&packets))[1].get(7).prim), scene)
 }
 
+/// How many rays are handed over.
+#[derive(Clone, Copy)]
+enum Call {
+    Batch,
+    Stream,
+}
+
+/// Rays of the camera of `room` and from what these hit, room for their hits, and a pool of this thread alone:
+/// what others do would count.
+fn many(call: Call) -> (Scene, Vec<Ray>, Vec<Hit>, ThreadPool, Call) {
+    let room = Case::new("room", 1024);
+    let (scene, mut hits) = (room.scene(Structure::HYBRID), vec![Hit::MISS; room.rays.len()]);
+    let pool = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().expect("a pool");
+    pool.install(|| trace(&scene, call, &room.rays, &mut hits));
+    assert!(room.rays.iter().zip(&hits).all(|(ray, hit)| *hit == scene.closest(ray)));
+    (scene, room.rays, hits, pool, call)
+}
+
+fn trace(scene: &Scene, call: Call, rays: &[Ray], hits: &mut [Hit]) {
+    match call {
+        Call::Batch => scene.closest_batch(rays, hits),
+        Call::Stream => scene.closest_stream(rays, hits),
+    }
+}
+
+#[library_benchmark(setup = many)]
+#[bench::batch(Call::Batch)]
+#[bench::stream(Call::Stream)]
+fn many_rays(
+    (scene, rays, mut hits, pool, call): (Scene, Vec<Ray>, Vec<Hit>, ThreadPool, Call),
+) -> (Vec<Hit>, Scene, Vec<Ray>, ThreadPool) {
+    pool.install(|| trace(black_box(&scene), call, black_box(&rays), &mut hits));
+    (hits, scene, rays, pool)
+}
+
 library_benchmark_group!(
     name = descents,
     benchmarks = [descend_general_2, descend_general_4, descend_halves]
@@ -305,6 +343,6 @@ library_benchmark_group!(
     benchmarks = [same_octree, same_octree_without_tests, structures, plan]
 );
 library_benchmark_group!(name = kernels, benchmarks = [kernel_ray, kernel_packet, kernel_decision]);
-library_benchmark_group!(name = packed, benchmarks = [sixteen_rays]);
+library_benchmark_group!(name = packed, benchmarks = [sixteen_rays, many_rays]);
 
 main!(library_benchmark_groups = [descents, steps, walks, kernels, packed]);

@@ -88,14 +88,17 @@ impl Cube {
     }
 }
 
-/// The voxels of `grid`, enlarged by `margin` but for rounding in f64, that a box overlaps.
+/// The voxels of `grid`, enlarged by `margin`, that a box overlaps.
 #[inline(always)]
 pub(super) fn range(bounds: &Aabb, grid: &Grid, margin: f64) -> [Range<u32>; 3] {
     std::array::from_fn(|axis| {
-        let index = |x: f64| ((x - grid.lo[axis]) * grid.axes.per_length) as u32;
+        // As much as rounding to f32 moves the sides of `Cube::enlarged`, for the error of the grid's corner.
+        let reach = |x: f32| margin + f64::from(x.abs()) / (1u32 << 25) as f64;
+        let index = |x: f64| (x * grid.axes.per_length) as u32;
         let last = grid.dims[axis] - 1;
-        let lo = index(f64::from(bounds.lo[axis]) - margin).min(last);
-        let hi = index(f64::from(bounds.hi[axis]) + margin).min(last);
+        let (lo, hi) = (bounds.lo[axis], bounds.hi[axis]);
+        let lo = index(f64::from(lo) - grid.lo[axis] - reach(lo)).min(last);
+        let hi = index(f64::from(hi) - grid.lo[axis] + reach(hi)).min(last);
         lo..hi + 1
     })
 }
@@ -129,6 +132,24 @@ pub(super) fn scatter<L: Lanes>(
                     each(voxel, Item { bounds: all.intersection(cube), mask, ..*item });
                 }
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dda::LIST_MARGIN;
+
+    /// Far from the origin rounding moves a grid's corner by more than the margin.
+    #[test]
+    fn ranges_cover_the_error_of_a_corner() {
+        let (far, off) = (2f64.powi(23), 2f64.powi(-26));
+        let plane = Vec3::splat(far as f32 + 1.0);
+        let touching = Aabb { lo: plane, hi: plane };
+        for off in [off, -off] {
+            let grid = Grid::new([far + off; 3], 1.0, [4; 3]);
+            assert_eq!(range(&touching, &grid, 4.0 * LIST_MARGIN), [0..2, 0..2, 0..2]);
         }
     }
 }

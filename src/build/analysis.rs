@@ -1,10 +1,9 @@
 //! What the phases of the build need to know of a mesh: bounds, zero areas, planes, crowds.
 
-use glam::{DVec3, UVec3, Vec3, Vec4};
+use glam::{DVec3, Vec3, Vec4};
 
-use super::grid;
+use super::grid::{self, Places};
 use crate::aabb::Aabb;
-use crate::arena::Grid;
 use crate::exact::{self, Difference};
 use crate::mesh::TriMesh;
 use crate::parallel;
@@ -96,40 +95,6 @@ impl Around {
         }
         let bounds = Aabb { lo: lo.truncate(), hi: hi.truncate() };
         Self { bounds, centers: Aabb { lo: first.truncate(), hi: last.truncate() }, any_empty }
-    }
-}
-
-/// Which voxel of a grid the centre of a box is in, but for rounding.
-pub(super) struct Places {
-    lo: Vec4,
-    per_length: f32,
-    last: Vec4,
-    strides: [u32; 3],
-}
-
-impl Places {
-    /// From here on f32 are whole numbers: adding it rounds to the last bits.
-    const WHOLE: f32 = (1u32 << 23) as f32;
-
-    pub(super) fn new(grid: &Grid) -> Self {
-        let [x, y, z] = grid.lo.map(|x| x as f32);
-        let last = UVec3::from_array(grid.dims) - 1;
-        Self {
-            lo: Vec4::new(x, y, z, 0.0),
-            per_length: grid.axes.per_length as f32,
-            last: last.as_vec3().extend(0.0),
-            strides: grid.strides(),
-        }
-    }
-
-    #[inline(always)]
-    pub(super) fn of(&self, b: &Aabb) -> u32 {
-        let center = b.lo.extend(0.0) * 0.5 + b.hi.extend(0.0) * 0.5;
-        let place = (center - self.lo) * self.per_length - 0.5;
-        // What is not a number counts as 0.
-        let place = place.max(Vec4::ZERO).min(self.last) + Self::WHOLE;
-        let [x, y, z, _] = place.to_array().map(|x| x.to_bits() - Self::WHOLE.to_bits());
-        x * self.strides[0] + y * self.strides[1] + z * self.strides[2]
     }
 }
 

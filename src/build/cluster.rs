@@ -13,8 +13,8 @@
 
 use std::ops::Range;
 
-use super::analysis::{Analysis, Around, Places};
-use super::grid;
+use super::analysis::{Analysis, Around};
+use super::grid::{self, Places};
 use super::sah::{self, Member};
 use crate::aabb::Aabb;
 use crate::cluster::Cluster;

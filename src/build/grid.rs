@@ -1,4 +1,6 @@
-//! The resolution of a grid.
+//! The resolution of a grid, and which voxel a box counts for.
+
+use glam::Vec4;
 
 use crate::aabb::Aabb;
 use crate::arena::Grid;
@@ -65,6 +67,39 @@ fn centred(lo: [f64; 3], extent: [f64; 3], cell: f64, dims: [u32; 3]) -> Grid {
     Grid::new(lo, cell, dims)
 }
 
+/// From here on f32 are whole numbers: adding it rounds to the last bits.
+pub(super) const WHOLE: f32 = (1u32 << 23) as f32;
+
+/// Which voxel of a grid the centre of a box is in, but for rounding.
+pub(super) struct Places {
+    lo: Vec4,
+    per_length: f32,
+    last: [u32; 3],
+    strides: [u32; 3],
+}
+
+impl Places {
+    pub(super) fn new(grid: &Grid) -> Self {
+        let [x, y, z] = grid.lo.map(|x| x as f32);
+        Self {
+            lo: Vec4::new(x, y, z, 0.0),
+            per_length: grid.axes.per_length as f32,
+            last: grid.dims.map(|n| n - 1),
+            strides: grid.strides(),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn of(&self, b: &Aabb) -> u32 {
+        let center = b.lo.extend(0.0) * 0.5 + b.hi.extend(0.0) * 0.5;
+        let place = ((center - self.lo) * self.per_length - 0.5).max(Vec4::ZERO) + WHOLE;
+        let place = place.to_array();
+        // Infinity and NaN, in scenes at the ends of the range of f32, are above all others.
+        let index = |axis: usize| (place[axis].to_bits().wrapping_sub(WHOLE.to_bits())).min(self.last[axis]);
+        index(0) * self.strides[0] + index(1) * self.strides[1] + index(2) * self.strides[2]
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -82,6 +117,20 @@ mod tests {
         assert_eq!(cubic(&bounds([1.0; 3]), 0.0).dims, [1; 3]);
         assert_eq!(cubic(&bounds([0.0; 3]), 9.0).dims, [1; 3]);
         assert_eq!(cubic(&bounds([1.0, 0.0, 0.0]), 1e9).dims, [1024, 1, 1]);
+    }
+
+    #[test]
+    fn centres_are_in_the_grid() {
+        let middle = |grid: &Grid, at: Vec3| Places::new(grid).of(&Aabb { lo: at, hi: at });
+        let grid = cubic(&bounds([4.0, 2.0, 1.0]), 1000.0);
+        assert_eq!(middle(&grid, Vec3::new(3.9, 0.1, 0.5)), 19 + 20 * 10 * 2);
+        for size in [1e-45, 1e-41, 1.0, 3e38] {
+            let bounds = Aabb { lo: Vec3::splat(-size), hi: Vec3::splat(size) };
+            let grid = cubic(&bounds, 1000.0);
+            for at in [bounds.lo, Vec3::ZERO, bounds.hi] {
+                assert!((middle(&grid, at) as usize) < grid.len(), "{size} {at}");
+            }
+        }
     }
 
     /// Each side lies inside by more than 2^-32 of the grid's width; differences of close f64 are exact.

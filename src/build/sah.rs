@@ -6,6 +6,7 @@
 
 use glam::Vec4;
 
+use super::grid::WHOLE;
 use crate::aabb::Aabb;
 use crate::lanes::WIDTH;
 use crate::parallel;
@@ -91,9 +92,6 @@ struct Binning {
 }
 
 impl Binning {
-    /// From here on f32 are whole numbers: adding it rounds to the last bits.
-    const WHOLE: f32 = (1u32 << 23) as f32;
-
     fn new(members: &[Member], bins: usize) -> Self {
         let (mut lo, mut hi) = (Vec4::MAX, Vec4::MIN);
         for member in members {
@@ -108,10 +106,10 @@ impl Binning {
         Self { start: lo, scale: Vec4::select(is_tried, scale, Vec4::ZERO) }
     }
 
-    /// The bin of a member along each axis, with [`Binning::WHOLE`] added; the fourth means nothing.
+    /// The bin of a member along each axis, with [`WHOLE`] added; the fourth means nothing.
     #[inline(always)]
     fn of(&self, member: &Member) -> Vec4 {
-        (member.center() - self.start) * self.scale + Vec4::splat(Self::WHOLE)
+        (member.center() - self.start) * self.scale + Vec4::splat(WHOLE)
     }
 }
 
@@ -126,7 +124,7 @@ impl Plane {
     /// On all axes, as one that is chosen at run time would be a jump.
     #[inline(always)]
     fn is_below(&self, member: &Member) -> bool {
-        let last = Vec4::splat(self.bin as f32 + Binning::WHOLE);
+        let last = Vec4::splat(self.bin as f32 + WHOLE);
         self.binning.of(member).cmple(last).bitmask() >> self.axis & 1 != 0
     }
 }

@@ -157,8 +157,7 @@ fn list<L: Lanes + Sync, P: Policy>(
                 scatter(space.lanes, space.clusters, item, space.grid, margin, |voxel, item| {
                     list.push((voxel, item));
                 });
-                // Each is going to be an item, too.
-                let work = list.len() * (size_of::<(u32, Item)>() + size_of::<Item>());
+                let work = list.len() * (size_of::<(u32, Item)>() + size_of::<Listed>());
                 space.limits.check(size_of_val(space.clusters) + work)?;
             }
             Ok(())

@@ -161,8 +161,5 @@ fn heading() -> String {
     let [cpu, _, isa, compiler, date] = machine.pairs();
     let avx2 = if cfg!(target_feature = "avx2") { "with" } else { "without" };
     let facts = [cpu.1, format!("octogrid's instruction set {}", isa.1), compiler.1, date.1].join(", ");
-    format!(
-        "# octogrid and its peers\n\n{facts}; compiled {avx2} AVX2 throughout; `{}`",
-        machine.command
-    )
+    format!("# octogrid and its peers\n\n{facts}; compiled {avx2} AVX2 throughout; `{}`", machine.command)
 }

@@ -1,6 +1,7 @@
 //! octogrid beside other ray tracers on the same triangles and rays. See README.md.
 
 mod clock;
+mod command;
 mod figures;
 mod measure;
 mod memory;
@@ -14,38 +15,11 @@ mod tables;
 mod threads;
 mod triangle;
 
-// The parts of the command that load scenes, find a place to stand and judge samples. Each knows the
-// others as modules of the crate's root.
-#[allow(dead_code)]
-#[path = "../../../src/bin/octogrid/camera.rs"]
-mod camera;
-#[allow(dead_code)]
-#[path = "../../../src/bin/octogrid/failure.rs"]
-mod failure;
-#[allow(dead_code)]
-#[path = "../../../src/bin/octogrid/load.rs"]
-mod load;
-#[allow(dead_code)]
+// Of the command's reports, as their items are for the module above.
 #[path = "../../../src/bin/octogrid/report/machine.rs"]
 mod machine;
-#[allow(dead_code)]
-#[path = "../../../src/bin/octogrid/output.rs"]
-mod output;
-#[allow(dead_code)]
-#[path = "../../../src/bin/octogrid/saved.rs"]
-mod saved;
-#[allow(dead_code)]
 #[path = "../../../src/bin/octogrid/report/statistics.rs"]
 mod statistics;
-#[allow(dead_code)]
-#[path = "../../../src/bin/octogrid/streams.rs"]
-mod streams;
-#[allow(dead_code)]
-#[path = "../../../src/bin/octogrid/survey.rs"]
-mod survey;
-#[allow(dead_code)]
-#[path = "../../../src/bin/octogrid/viewpoint.rs"]
-mod viewpoint;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -54,6 +28,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use octogrid::builtin;
 
+use command::{camera, failure, load, output, saved, streams, survey, viewpoint};
 use failure::Failure;
 use load::Loaded;
 use machine::Machine;

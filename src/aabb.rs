@@ -1,6 +1,6 @@
 //! Axis-aligned boxes.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 /// A closed axis-aligned box; empty where `lo` exceeds `hi`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +36,12 @@ impl Aabb {
     pub(crate) fn half_area(&self) -> f32 {
         let e = self.extent();
         e.x * e.y + e.y * e.z + e.z * e.x
+    }
+
+    /// [`Aabb::center`] on four lanes, of which the last means nothing.
+    #[inline(always)]
+    pub(crate) fn center4(&self) -> Vec4 {
+        self.lo.extend(0.0) * 0.5 + self.hi.extend(0.0) * 0.5
     }
 
     /// The middle; finite where the box is.

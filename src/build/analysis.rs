@@ -88,7 +88,7 @@ impl Around {
         let (mut first, mut last) = (lo, hi);
         for b in boxes {
             let (l, h) = (b.lo.extend(0.0), b.hi.extend(0.0));
-            let center = l * 0.5 + h * 0.5;
+            let center = b.center4();
             (lo, hi) = (lo.min(l), hi.max(h));
             (first, last) = (first.min(center), last.max(center));
             any_empty |= b.lo.x > b.hi.x;

@@ -91,12 +91,11 @@ impl Places {
 
     #[inline(always)]
     pub(super) fn of(&self, b: &Aabb) -> u32 {
-        let center = b.lo.extend(0.0) * 0.5 + b.hi.extend(0.0) * 0.5;
-        let place = ((center - self.lo) * self.per_length - 0.5).max(Vec4::ZERO) + WHOLE;
+        let place = ((b.center4() - self.lo) * self.per_length - 0.5).max(Vec4::ZERO) + WHOLE;
         let place = place.to_array();
         // Infinity and NaN, in scenes at the ends of the range of f32, are above all others.
-        let index = |axis: usize| (place[axis].to_bits().wrapping_sub(WHOLE.to_bits())).min(self.last[axis]);
-        index(0) * self.strides[0] + index(1) * self.strides[1] + index(2) * self.strides[2]
+        let index = |axis: usize| place[axis].to_bits().wrapping_sub(WHOLE.to_bits()).min(self.last[axis]);
+        (0..3).map(|axis| index(axis) * self.strides[axis]).sum()
     }
 }
 

@@ -61,8 +61,14 @@ pub(crate) trait Test {
         None
     }
 
-    /// The hit of one of these lanes.
-    fn decide<L: Lanes>(lanes: L, found: &Self::Found<L>, subject: &Subject<'_>) -> Option<Intersection>;
+    /// The hit of one of these lanes, where it is clear.
+    fn clear<L: Lanes>(lanes: L, found: &Self::Found<L>, subject: &Subject<'_>) -> Option<Intersection>;
+
+    /// The hit, if it is one, of a lane that is not a clear hit.
+    #[inline(always)]
+    fn unclear(_: &Subject<'_>) -> Option<Intersection> {
+        None
+    }
 }
 
 /// [`Kernel::Exact`].
@@ -89,25 +95,21 @@ impl Test for Exact {
     }
 
     #[inline(always)]
-    fn decide<L: Lanes>(_: L, _: &Bounded<L>, subject: &Subject<'_>) -> Option<Intersection> {
-        let &Subject { ray, cluster, lane, rule } = subject;
-        clear_hit(ray, cluster.triangle(lane)).or_else(|| unclear(ray, cluster, lane, rule))
+    fn clear<L: Lanes>(_: L, _: &Bounded<L>, subject: &Subject<'_>) -> Option<Intersection> {
+        clear_hit(subject.ray, subject.cluster.triangle(subject.lane))
+    }
+
+    /// Loads the corners again, so that clear ones need not keep them.
+    #[inline(always)]
+    fn unclear(subject: &Subject<'_>) -> Option<Intersection> {
+        decide(subject.ray, subject.cluster.triangle(subject.lane), subject.rule)
     }
 }
 
-/// What [`Exact`] decides about a lane that [`Test::certain`] names, its bounds of t that far apart.
+/// The hit of a lane that [`Test::certain`] names, its bounds of t that far apart, where it is clear.
 #[inline(always)]
 pub(crate) fn known(subject: &Subject<'_>, width: f32) -> Option<Intersection> {
-    let &Subject { ray, cluster, lane, rule } = subject;
-    known_hit(ray, cluster.triangle(lane), width).or_else(|| unclear(ray, cluster, lane, rule))
-}
-
-/// What [`Exact`] does about the few lanes that are not a clear hit; it loads the corners again, so that they
-/// need not be kept.
-#[cold]
-#[inline(never)]
-fn unclear(ray: &Ray, cluster: &Cluster, lane: usize, rule: EdgeRule) -> Option<Intersection> {
-    decide(ray, cluster.triangle(lane), rule)
+    known_hit(subject.ray, subject.cluster.triangle(subject.lane), width)
 }
 
 impl Test for Double {
@@ -119,7 +121,7 @@ impl Test for Double {
     }
 
     #[inline(always)]
-    fn decide<L: Lanes>(_: L, (): &(), subject: &Subject<'_>) -> Option<Intersection> {
+    fn clear<L: Lanes>(_: L, (): &(), subject: &Subject<'_>) -> Option<Intersection> {
         let [v0, v1, v2] = subject.cluster.triangle(subject.lane).map(Vec3::as_dvec3);
         let (o, d) = (subject.ray.origin.as_dvec3(), subject.ray.dir.as_dvec3());
         let (s, e1, e2) = (o - v0, v1 - v0, v2 - v0);
@@ -141,10 +143,10 @@ impl Test for Plain {
     }
 
     #[inline(always)]
-    fn decide<L: Lanes>(lanes: L, found: &Vec3Lanes<L>, subject: &Subject<'_>) -> Option<Intersection> {
+    fn clear<L: Lanes>(lanes: L, found: &Vec3Lanes<L>, subject: &Subject<'_>) -> Option<Intersection> {
         let [t, u, v] = axes(
             #[inline(always)]
-            |i| lanes.store(found[i])[subject.lane],
+            |i| lanes.lane(found[i], subject.lane),
         );
         Some(Intersection { t: Scale::of(subject.ray.dir).unscaled(t), u, v })
     }
@@ -159,8 +161,8 @@ impl Test for Fused {
     }
 
     #[inline(always)]
-    fn decide<L: Lanes>(lanes: L, found: &Vec3Lanes<L>, subject: &Subject<'_>) -> Option<Intersection> {
-        Plain::decide(lanes, found, subject)
+    fn clear<L: Lanes>(lanes: L, found: &Vec3Lanes<L>, subject: &Subject<'_>) -> Option<Intersection> {
+        Plain::clear(lanes, found, subject)
     }
 }
 

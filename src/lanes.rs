@@ -43,6 +43,17 @@ pub(crate) trait Lanes: Copy {
     fn load(self, x: &[f32; WIDTH]) -> Self::F32;
     /// The values.
     fn store(self, x: Self::F32) -> [f32; WIDTH];
+    /// The value of one lane.
+    ///
+    /// # Panics
+    /// Where there is no such lane.
+    #[inline(always)]
+    fn lane(self, x: Self::F32, lane: usize) -> f32 {
+        /// Within a cache line, or the load would wait until the store has left the processor.
+        #[repr(align(32))]
+        struct Aligned([f32; WIDTH]);
+        Aligned(self.store(x)).0[lane]
+    }
     /// a * b + c, rounded once where the instruction set can do it, else twice.
     fn mul_add(self, a: Self::F32, b: Self::F32, c: Self::F32) -> Self::F32;
     /// The absolute values.
@@ -107,6 +118,17 @@ pub(crate) fn axes<T>(f: impl Fn(usize) -> T) -> [T; 3] {
 /// Lanes of an instruction set that was found at run time.
 #[derive(Clone, Copy)]
 pub(crate) struct Dispatched<S>(pub(crate) S);
+
+/// The same, not to be copied: a closure takes it by value, which is nothing, where it would keep a pointer to what
+/// can be copied. With two pointers to keep at most it is handed over in registers.
+pub(crate) struct Token<S>(pub(crate) S);
+
+impl<S> Token<S> {
+    #[inline(always)]
+    pub(crate) fn lanes(self) -> Dispatched<S> {
+        Dispatched(self.0)
+    }
+}
 
 impl<S: Simd> Lanes for Dispatched<S> {
     type F32 = f32x8<S>;
@@ -223,8 +245,11 @@ macro_rules! dispatch {
         }
     };
     (@ $simd:ident, $lanes:ident => $body:expr) => {{
-        let $lanes = $crate::lanes::Dispatched($simd);
-        fearless_simd::Simd::vectorize($simd, #[inline(always)] || $body)
+        let token = $crate::lanes::Token($simd);
+        fearless_simd::Simd::vectorize($simd, #[inline(always)] || {
+            let $lanes = token.lanes();
+            $body
+        })
     }};
 }
 pub(crate) use dispatch;

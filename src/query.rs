@@ -117,8 +117,10 @@ impl Query for Closest {
     #[inline(always)]
     fn accept(&mut self, hit: Hit) -> ControlFlow<()> {
         if hit.precedes(&self.hit) {
-            self.hit = hit;
-            self.t_max = hit.t;
+            // As one vector, as which it is read: a load waits until separate stores have left the processor.
+            let Hit { t, u, v, prim } = hit;
+            self.hit = bytemuck::cast(glam::Vec4::new(t, u, v, f32::from_bits(prim)));
+            self.t_max = t;
         }
         ControlFlow::Continue(())
     }

@@ -67,16 +67,12 @@ impl Scene {
 
     /// The closest hit, or [`Hit::MISS`]; of hits with the same t the one with the least index.
     pub fn closest(&self, ray: &Ray) -> Hit {
-        let mut query = Closest::new(ray.t_max);
-        self.query(ray, &mut query);
-        query.hit()
+        traverse::answer::<Closest>(self.isa, &self.arena, self.walk, ray)
     }
 
     /// Whether there is any hit.
     pub fn occluded(&self, ray: &Ray) -> bool {
-        let mut query = Any::new(ray.t_max);
-        self.query(ray, &mut query);
-        query.found()
+        traverse::answer::<Any>(self.isa, &self.arena, self.walk, ray)
     }
 
     /// All hits, each triangle once, sorted by (t, index), into the start of `hits`.

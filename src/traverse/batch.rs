@@ -128,8 +128,6 @@ impl Batch<'_> {
     #[cold]
     #[inline(never)]
     fn alone<Q: PerRay>(&self, ray: &Ray) -> Q::Answer {
-        let mut query = Q::up_to(ray.t_max);
-        super::query::<Exact, Q>(self.isa, self.arena, self.walk, ray, &mut query);
-        query.answer()
+        super::answer::<Q>(self.isa, self.arena, self.walk, ray)
     }
 }

@@ -3,7 +3,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Visit, Walker};
+use super::{Visit, Walker, every_cluster};
 use crate::arena::Arena;
 use crate::dda::Path;
 use crate::lanes::Lanes;
@@ -14,9 +14,6 @@ pub(crate) struct Brute;
 impl Walker for Brute {
     #[inline(always)]
     fn walk<L: Lanes, V: Visit>(_: L, arena: &Arena, _: &Path<L>, visit: &mut V) -> ControlFlow<()> {
-        for index in 0..arena.clusters.len() as u32 {
-            visit.only(index)?;
-        }
-        ControlFlow::Continue(())
+        every_cluster(arena, visit)
     }
 }

@@ -89,18 +89,36 @@ impl<'a, L: Lanes, K: Test, Q: Query> LeafTest<'a, L, K, Q> {
     #[inline(always)]
     fn settle(&mut self) -> ControlFlow<()> {
         let Pending { cluster, lane, low, high } = std::mem::replace(&mut self.pending, Pending::NONE);
+        let at = known(&self.subject(cluster, lane), high - low);
+        self.decided(cluster, lane, at)
+    }
+
+    /// One lane of a cluster.
+    #[inline(always)]
+    fn subject(&self, cluster: u32, lane: usize) -> Subject<'a> {
         let cluster = &self.arena.clusters[cluster as usize];
-        let at = known(&Subject { ray: self.ray, cluster, lane, rule: Q::RULE }, high - low);
-        self.offer(at, cluster.ids()[lane])
+        Subject { ray: self.ray, cluster, lane, rule: Q::RULE }
+    }
+
+    /// Offers what is clear, and looks further into what is not.
+    #[inline(always)]
+    fn decided(&mut self, cluster: u32, lane: usize, clear: Option<Intersection>) -> ControlFlow<()> {
+        let prim = self.arena.clusters[cluster as usize].ids()[lane];
+        match clear {
+            Some(at) => self.offer(at, prim),
+            // A hit ends the walk, so that all of this may live in registers.
+            None if Q::WANTED == Wanted::Any => match unclear::<K>(&self.subject(cluster, lane)) {
+                Some(at) => self.offer(at, prim),
+                None => ControlFlow::Continue(()),
+            },
+            None => self.offer_unclear(cluster, lane),
+        }
     }
 
     /// Offers a hit to the query if it lies within the interval.
     #[inline(always)]
-    fn offer(&mut self, at: Option<Intersection>, prim: u32) -> ControlFlow<()> {
-        if let Some(at) = at
-            && at.t > self.ray.t_min
-            && at.t <= self.query.t_max()
-        {
+    fn offer(&mut self, at: Intersection, prim: u32) -> ControlFlow<()> {
+        if at.t > self.ray.t_min && at.t <= self.query.t_max() {
             self.query.accept(Hit { t: at.t, u: at.u, v: at.v, prim })?;
             self.narrow();
         }
@@ -128,8 +146,33 @@ impl<'a, L: Lanes, K: Test, Q: Query> LeafTest<'a, L, K, Q> {
     #[cold]
     #[inline(never)]
     fn settle_early(&mut self) -> ControlFlow<()> {
-        self.settle()
+        self.lanes.vectorize(
+            #[inline(always)]
+            || self.settle(),
+        )
     }
+
+    /// Offers what is not clear. It is not handed back, so that what is clear never leaves its registers.
+    #[cold]
+    #[inline(never)]
+    fn offer_unclear(&mut self, cluster: u32, lane: usize) -> ControlFlow<()> {
+        self.lanes.vectorize(
+            #[inline(always)]
+            || {
+                let subject = self.subject(cluster, lane);
+                match K::unclear(&subject) {
+                    Some(at) => self.offer(at, subject.cluster.ids()[lane]),
+                    None => ControlFlow::Continue(()),
+                }
+            },
+        )
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn unclear<K: Test>(subject: &Subject<'_>) -> Option<Intersection> {
+    K::unclear(subject)
 }
 
 impl<L: Lanes, K: Test, Q: Query> Visit for LeafTest<'_, L, K, Q> {
@@ -173,7 +216,7 @@ impl<L: Lanes, K: Test, Q: Query> Visit for LeafTest<'_, L, K, Q> {
             if let Some(certain) = &certain
                 && certain.lanes >> lane & 1 != 0
             {
-                let (low, high) = (self.lanes.store(certain.low)[lane], self.lanes.store(certain.high)[lane]);
+                let (low, high) = (self.lanes.lane(certain.low, lane), self.lanes.lane(certain.high, lane));
                 if Q::WANTED == Wanted::Any {
                     return self.query.accept(Hit { t: high, u: 0.0, v: 0.0, prim });
                 }
@@ -182,8 +225,8 @@ impl<L: Lanes, K: Test, Q: Query> Visit for LeafTest<'_, L, K, Q> {
                 }
                 self.settle_early()?;
             }
-            let at = K::decide(self.lanes, &found, &Subject { ray: self.ray, cluster, lane, rule: Q::RULE });
-            self.offer(at, prim)?;
+            let at = K::clear(self.lanes, &found, &Subject { ray: self.ray, cluster, lane, rule: Q::RULE });
+            self.decided(index, lane, at)?;
         }
         ControlFlow::Continue(())
     }

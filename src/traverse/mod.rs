@@ -21,7 +21,7 @@ use std::ops::ControlFlow;
 use crate::arena::{Arena, Form};
 use crate::dda::{Clip, Path};
 use crate::descent::Walk;
-use crate::kernel::Test;
+use crate::kernel::{Exact, Test};
 use crate::lanes::{Isa, Lanes, dispatch};
 use crate::query::Query;
 use crate::ray::Ray;
@@ -114,49 +114,84 @@ macro_rules! dispatch_walk {
 #[inline(always)]
 pub(crate) fn query<K: Test, Q: Query>(isa: Isa, arena: &Arena, walk: Walk, ray: &Ray, query: &mut Q) {
     dispatch_walk!(arena, walk, W => dispatch!(isa, lanes => {
-        let mut leaves = LeafTest::<_, K, Q>::new(lanes, arena, ray, query);
-        if along::<W, _, _>(lanes, arena, ray, &mut leaves).is_continue() {
-            leaves.finish();
+        if !along::<W, _, K, Q>(lanes, arena, ray, query) {
+            all_clusters::<_, K, Q>(lanes, arena, ray, query);
         }
     }));
 }
 
-/// Walks along a ray.
+/// What a query answers that lives below the dispatch: all that is handed over and kept finds registers.
+#[inline(always)]
+pub(crate) fn answer<Q: PerRay>(isa: Isa, arena: &Arena, walk: Walk, ray: &Ray) -> Q::Answer {
+    dispatch_walk!(arena, walk, W => dispatch!(isa, lanes => {
+        let mut query = Q::up_to(ray.t_max);
+        if along::<W, _, Exact, Q>(lanes, arena, ray, &mut query) {
+            query.answer()
+        } else {
+            answer_of_all::<_, Q>(lanes, arena, ray)
+        }
+    }))
+}
+
+/// Runs a query along a ray; false where no walk can follow it.
+#[inline(always)]
+fn along<W: Walker, L: Lanes, K: Test, Q: Query>(lanes: L, arena: &Arena, ray: &Ray, query: &mut Q) -> bool {
+    match Path::clip(lanes, ray, &arena.grid) {
+        Clip::Miss => true,
+        Clip::Path(path) => {
+            let mut leaves = LeafTest::<_, K, Q>::new(lanes, arena, ray, query);
+            if W::walk(lanes, arena, &path, &mut leaves).is_continue() {
+                leaves.finish();
+            }
+            true
+        }
+        Clip::TooFar => false,
+    }
+}
+
+/// [`answer`] for a ray that no walk can follow.
+#[cold]
+#[inline(never)]
+fn answer_of_all<L: Lanes, Q: PerRay>(lanes: L, arena: &Arena, ray: &Ray) -> Q::Answer {
+    let mut query = Q::up_to(ray.t_max);
+    all_clusters::<_, Exact, Q>(lanes, arena, ray, &mut query);
+    query.answer()
+}
+
+/// Tests all clusters.
+#[cold]
+#[inline(never)]
+fn all_clusters<L: Lanes, K: Test, Q: Query>(lanes: L, arena: &Arena, ray: &Ray, query: &mut Q) {
+    lanes.vectorize(
+        #[inline(always)]
+        || {
+            let mut leaves = LeafTest::<_, K, Q>::new(lanes, arena, ray, query);
+            if every_cluster(arena, &mut leaves).is_continue() {
+                leaves.finish();
+            }
+        },
+    );
+}
+
+/// Visits the clusters of the voxels along a ray.
 #[inline(always)]
 pub(crate) fn visit<V: Visit>(isa: Isa, arena: &Arena, walk: Walk, ray: &Ray, visit: &mut V) {
     dispatch_walk!(arena, walk, W => dispatch!(isa, lanes => {
         // How the walk ended is no news.
-        let _ = along::<W, _, _>(lanes, arena, ray, visit);
+        let _ = match Path::clip(lanes, ray, &arena.grid) {
+            Clip::Miss => ControlFlow::Continue(()),
+            Clip::Path(path) => W::walk(lanes, arena, &path, visit),
+            Clip::TooFar => every_cluster(arena, visit),
+        };
     }));
 }
 
 #[inline(always)]
-fn along<W: Walker, L: Lanes, V: Visit>(
-    lanes: L,
-    arena: &Arena,
-    ray: &Ray,
-    visit: &mut V,
-) -> ControlFlow<()> {
-    match Path::clip(lanes, ray, &arena.grid) {
-        Clip::Miss => ControlFlow::Continue(()),
-        Clip::Path(path) => W::walk(lanes, arena, &path, visit),
-        Clip::TooFar => every_cluster(lanes, arena, visit),
+fn every_cluster<V: Visit>(arena: &Arena, visit: &mut V) -> ControlFlow<()> {
+    for index in 0..arena.clusters.len() as u32 {
+        visit.only(index)?;
     }
-}
-
-/// Visits all clusters, for a ray that no walk can follow.
-#[cold]
-#[inline(never)]
-fn every_cluster<L: Lanes, V: Visit>(lanes: L, arena: &Arena, visit: &mut V) -> ControlFlow<()> {
-    lanes.vectorize(
-        #[inline(always)]
-        || {
-            for index in 0..arena.clusters.len() as u32 {
-                visit.only(index)?;
-            }
-            ControlFlow::Continue(())
-        },
-    )
+    ControlFlow::Continue(())
 }
 
 /// Traces the rays of a group together; false where they don't go alike, and its hits mean nothing.

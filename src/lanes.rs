@@ -70,6 +70,10 @@ pub(crate) trait Lanes: Copy {
     fn at_most(self, a: Self::F32, b: Self::F32) -> Self::Mask;
     /// The mask as bits, lane 0 lowest.
     fn bits(self, mask: Self::Mask) -> u32;
+    /// The inverse of [`Lanes::bits`].
+    fn mask(self, bits: u32) -> Self::Mask;
+    /// a where the mask is true, else b.
+    fn select(self, mask: Self::Mask, a: Self::F32, b: Self::F32) -> Self::F32;
 
     /// Four f64 values.
     type F64: Copy
@@ -181,6 +185,14 @@ impl<S: Simd> Lanes for Dispatched<S> {
     #[inline(always)]
     fn bits(self, mask: mask32x8<S>) -> u32 {
         mask.to_bitmask() as u32
+    }
+    #[inline(always)]
+    fn mask(self, bits: u32) -> mask32x8<S> {
+        mask32x8::from_bitmask(self.0, u64::from(bits))
+    }
+    #[inline(always)]
+    fn select(self, mask: mask32x8<S>, a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
+        mask.select(a, b)
     }
 
     type F64 = f64x4<S>;
@@ -346,6 +358,9 @@ mod tests {
         let b = [2.0, -3.0, 3.0, 1.0, -0.0, 0.0, f32::INFINITY, -7.0];
         let less = lanes.less(lanes.load(&a), lanes.load(&b));
         assert_eq!(lanes.bits(less), 0b1000_0001);
+        let chosen = lanes.select(lanes.mask(0b1010_0010), lanes.load(&b), lanes.load(&a));
+        let chosen = lanes.store(chosen).map(f32::to_bits);
+        assert_eq!(chosen, [1.0, -3.0, 3.0, f32::NAN, 0.0, 0.0, f32::INFINITY, -7.0].map(f32::to_bits));
         let abs = lanes.abs(lanes.load(&a)) - lanes.splat(2.5);
         assert_eq!(lanes.bits(lanes.less(lanes.splat(0.0), abs)), 0b1100_0100);
         let (low, high) =

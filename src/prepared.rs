@@ -17,7 +17,7 @@ use glam::Vec3;
 
 use crate::filter::{Bounded, Products, RayLanes, TINY, size};
 use crate::lanes::{Doubles, Lanes, Once, Vec3Lanes, WIDTH, cross, dot, minus, splat};
-use crate::triangle::{Intersection, SHARE};
+use crate::triangle::SHARE;
 
 /// A triangle in all lanes.
 #[derive(Clone, Copy)]
@@ -62,16 +62,9 @@ impl<L: Lanes> Prepared<L> {
 /// Where eight rays meet a triangle each, for the lanes in `clear`.
 pub(crate) struct Hits {
     pub(crate) clear: u32,
-    t: [f32; WIDTH],
-    u: [f32; WIDTH],
-    v: [f32; WIDTH],
-}
-
-impl Hits {
-    #[inline(always)]
-    pub(crate) fn at(&self, lane: usize) -> Intersection {
-        Intersection { t: self.t[lane], u: self.u[lane], v: self.v[lane] }
-    }
+    pub(crate) t: [f32; WIDTH],
+    pub(crate) u: [f32; WIDTH],
+    pub(crate) v: [f32; WIDTH],
 }
 
 /// Where eight rays meet a triangle each, given by corner and axis, as [`known_hit`](crate::triangle::known_hit)
@@ -83,7 +76,7 @@ pub(crate) fn known8<L: Doubles>(
     origin: &[[f32; WIDTH]; 3],
     dir: &[[f32; WIDTH]; 3],
     corners: &[[[f32; WIDTH]; 3]; 3],
-    width: &[f32; WIDTH],
+    width: L::F32,
 ) -> Hits {
     let (o, d) = (widened(lanes, origin), widened(lanes, dir));
     let v0 = widened(lanes, &corners[0]);
@@ -93,8 +86,7 @@ pub(crate) fn known8<L: Doubles>(
     let (p, q) = (cross8::<L>(&e2, &d), cross8::<L>(&e1, &s));
     let inverse = lanes.splat8(1.0) / dot8::<L>(&e1, &p);
     let t = dot8::<L>(&e2, &q) * inverse;
-    let error = lanes.widen(lanes.load(width)) * lanes.splat8(SHARE)
-        + lanes.abs8(t) * lanes.splat8(4.0 * f64::EPSILON);
+    let error = lanes.widen(width) * lanes.splat8(SHARE) + lanes.abs8(t) * lanes.splat8(4.0 * f64::EPSILON);
     let (low, high) = (lanes.narrow(t - error), lanes.narrow(t + error));
     let same = lanes.at_most(high, low) & lanes.less(lanes.abs(low), lanes.splat(f32::INFINITY));
     Hits {
@@ -171,16 +163,16 @@ mod tests {
                     let rays = RayLanes::gather(lanes, &RayPacket::new(&rays));
                     let bounded = Prepared::new(lanes, corners).bounded(lanes, &rays);
                     let Certain { lanes: certain, low, high } = bounded.certain(lanes, &rays);
-                    let width = lanes.store(high - low);
-                    (bounded.possible(lanes, &rays), certain, known8(lanes, &origin, &dir, &splat, &width))
+                    let hits = known8(lanes, &origin, &dir, &splat, high - low);
+                    (bounded.possible(lanes, &rays), certain, hits)
                 });
                 for (lane, ray) in rays.iter().enumerate() {
                     let found = intersect(ray, corners, EdgeRule::Closed);
                     let unscaled = (0.5..=2f32.powi(32)).contains(&ray.dir.abs().max_element());
                     if unscaled && certain & hits.clear & 1 << lane != 0 {
-                        let (at, known) = (found.expect("what is certain is a hit"), hits.at(lane));
-                        let bits = |at: Intersection| [at.t, at.u, at.v].map(f32::to_bits);
-                        assert_eq!(bits(known), bits(at), "{ray:?}");
+                        let at = found.expect("what is certain is a hit");
+                        let known = [hits.t[lane], hits.u[lane], hits.v[lane]];
+                        assert_eq!(known.map(f32::to_bits), [at.t, at.u, at.v].map(f32::to_bits), "{ray:?}");
                         clear += 1;
                     }
                     let within = found.is_some_and(|at| at.t > ray.t_min && at.t <= ray.t_max);

@@ -57,6 +57,15 @@ impl Lanes for Portable {
     fn bits(self, mask: wide::f32x8) -> u32 {
         mask.to_bitmask()
     }
+    #[inline(always)]
+    fn mask(self, bits: u32) -> wide::f32x8 {
+        let lane = |i: usize| f32::from_bits(if bits >> i & 1 != 0 { u32::MAX } else { 0 });
+        wide::f32x8::from([lane(0), lane(1), lane(2), lane(3), lane(4), lane(5), lane(6), lane(7)])
+    }
+    #[inline(always)]
+    fn select(self, mask: wide::f32x8, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
+        mask.select(a, b)
+    }
 
     type F64 = wide::f64x4;
     type Mask4 = wide::f64x4;

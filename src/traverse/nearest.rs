@@ -8,8 +8,8 @@ use glam::Vec3;
 
 use crate::arena::Arena;
 use crate::hit::Hit;
-use crate::lanes::{Doubles, WIDTH};
-use crate::prepared::{Hits, known8};
+use crate::lanes::{Doubles, Lanes, WIDTH};
+use crate::prepared::known8;
 use crate::query::EdgeRule;
 use crate::ray::Ray;
 use crate::triangle::{Intersection, intersect};
@@ -19,10 +19,6 @@ use crate::triangle::{Intersection, intersect};
 pub(crate) struct Source {
     pub(crate) cluster: u32,
     pub(crate) lane: u32,
-}
-
-impl Source {
-    const NONE: Self = Self { cluster: u32::MAX, lane: 0 };
 }
 
 /// The closest hits, a ray a lane.
@@ -36,8 +32,13 @@ pub(crate) struct Nearest {
     u: [f32; WIDTH],
     v: [f32; WIDTH],
     prim: [u32; WIDTH],
-    source: [Source; WIDTH],
+    /// Where the triangles of hits that are to be decided are; [`NONE`] of the others.
+    cluster: [u32; WIDTH],
+    slot: [u32; WIDTH],
 }
+
+/// No cluster.
+const NONE: u32 = u32::MAX;
 
 impl Nearest {
     /// Not started.
@@ -47,14 +48,15 @@ impl Nearest {
         u: [0.0; WIDTH],
         v: [0.0; WIDTH],
         prim: [0; WIDTH],
-        source: [Source { cluster: 0, lane: 0 }; WIDTH],
+        cluster: [0; WIDTH],
+        slot: [0; WIDTH],
     };
 
     /// Starts anew, with nothing beyond `t_max`.
     #[inline(always)]
     pub(crate) fn start(&mut self, lane: usize, t_max: f32) {
         (self.t[lane], self.low[lane]) = (t_max, t_max);
-        (self.prim[lane], self.source[lane]) = (u32::MAX, Source::NONE);
+        (self.prim[lane], self.cluster[lane]) = (u32::MAX, NONE);
     }
 
     /// The hit, once it is decided.
@@ -75,36 +77,40 @@ impl Nearest {
     /// Whether there is a hit that is still to be decided.
     #[inline(always)]
     fn is_pending(&self, lane: usize) -> bool {
-        self.source[lane].cluster != u32::MAX
+        self.cluster[lane] != NONE
     }
 
-    /// Notes a hit of which nothing else is asked, which is certain, t between two bounds. `None` where only a
-    /// decision tells whether it is within the interval.
+    /// Notes hits of one triangle of which nothing else is asked, which are certain, t below `high`. The lanes in
+    /// which that was done, and those in which only a decision tells whether they are within the interval.
     #[inline(always)]
-    pub(crate) fn note(&mut self, lane: usize, [_, high]: [f32; 2], prim: u32) -> Option<bool> {
-        let within = high <= self.t[lane];
-        if within {
-            self.prim[lane] = prim;
-        }
-        within.then_some(true)
+    pub(crate) fn note<L: Lanes>(&mut self, lanes: L, hits: u32, high: L::F32, prim: u32) -> [u32; 2] {
+        let within = hits & lanes.bits(lanes.at_most(high, lanes.load(&self.t)));
+        put_bits(lanes, within, &mut self.prim, prim);
+        [within, hits & !within]
     }
 
-    /// Takes a hit that is certain, t between `low` and `high`, if it is closer. `None` where only decisions tell
-    /// which one is; else whether it was taken.
+    /// Takes hits of one triangle that are certain, t between `low` and `high`, where they are closer. The lanes in
+    /// which that was done, and those in which only decisions tell.
+    ///
+    /// All lanes at once, not only for speed: a vector is not loaded before single values stored to it have left
+    /// the processor.
     #[inline(always)]
-    pub(crate) fn defer(
+    pub(crate) fn defer<L: Lanes>(
         &mut self,
-        lane: usize,
-        [low, high]: [f32; 2],
+        lanes: L,
+        hits: u32,
+        [low, high]: [L::F32; 2],
         prim: u32,
         source: Source,
-    ) -> Option<bool> {
-        let closer = high < self.low[lane];
-        if closer {
-            (self.t[lane], self.low[lane]) = (high, low);
-            (self.prim[lane], self.source[lane]) = (prim, source);
-        }
-        (closer || low > self.t[lane]).then_some(closer)
+    ) -> [u32; 2] {
+        let closer = hits & lanes.bits(lanes.less(high, lanes.load(&self.low)));
+        let later = lanes.bits(lanes.less(lanes.load(&self.t), low));
+        put(lanes, closer, &mut self.t, high);
+        put(lanes, closer, &mut self.low, low);
+        put_bits(lanes, closer, &mut self.prim, prim);
+        put_bits(lanes, closer, &mut self.cluster, source.cluster);
+        put_bits(lanes, closer, &mut self.slot, source.lane);
+        [closer, hits & !closer & !later]
     }
 
     /// Takes a decided hit within the interval if it is the closest; whether it is.
@@ -131,15 +137,14 @@ impl Nearest {
     #[inline(always)]
     fn set(&mut self, lane: usize, at: Intersection) {
         (self.t[lane], self.low[lane], self.u[lane], self.v[lane]) = (at.t, at.t, at.u, at.v);
-        self.source[lane] = Source::NONE;
+        self.cluster[lane] = NONE;
     }
 
     /// Decides one hit.
     #[cold]
     #[inline(never)]
     fn settle(&mut self, arena: &Arena, ray: &Ray, lane: usize) {
-        let Source { cluster, lane: slot } = self.source[lane];
-        let corners = arena.clusters[cluster as usize].triangle(slot as usize);
+        let corners = arena.clusters[self.cluster[lane] as usize].triangle(self.slot[lane] as usize);
         let at = intersect(ray, corners, EdgeRule::Closed);
         debug_assert!(at.is_some(), "what is certain is a hit: {ray:?} {corners:?}");
         match at {
@@ -157,36 +162,52 @@ impl Nearest {
         origin: &[[f32; WIDTH]; 3],
         dir: &[[f32; WIDTH]; 3],
     ) {
-        let mut left = 0u32;
-        let mut corners = [[[0.0; WIDTH]; 3]; 3];
-        let mut width = [0.0; WIDTH];
+        let mut pending = 0u32;
         for lane in 0..WIDTH {
-            if self.is_pending(lane) {
-                let Source { cluster, lane: slot } = self.source[lane];
-                left |= 1 << lane;
-                width[lane] = self.t[lane] - self.low[lane];
-                let triangle = arena.clusters[cluster as usize].triangle(slot as usize);
-                for corner in 0..3 {
-                    for axis in 0..3 {
-                        corners[corner][axis][lane] = triangle[corner][axis];
-                    }
+            pending |= u32::from(self.is_pending(lane)) << lane;
+        }
+        if pending == 0 {
+            return;
+        }
+        let mut corners = [[[0.0; WIDTH]; 3]; 3];
+        for lane in 0..WIDTH {
+            // Any triangle where none is pending.
+            let cluster = if pending >> lane & 1 != 0 { self.cluster[lane] } else { 0 };
+            let triangle = arena.clusters[cluster as usize].triangle(self.slot[lane] as usize & (WIDTH - 1));
+            for corner in 0..3 {
+                for axis in 0..3 {
+                    corners[corner][axis][lane] = triangle[corner][axis];
                 }
             }
         }
-        if left == 0 {
-            return;
-        }
-        let hits: Hits = known8(lanes, origin, dir, &corners, &width);
+        let width = lanes.load(&self.t) - lanes.load(&self.low);
+        let hits = known8(lanes, origin, dir, &corners, width);
+        let clear = hits.clear & pending;
+        let [t, u, v] = [lanes.load(&hits.t), lanes.load(&hits.u), lanes.load(&hits.v)];
+        put(lanes, clear, &mut self.t, t);
+        put(lanes, clear, &mut self.low, t);
+        put(lanes, clear, &mut self.u, u);
+        put(lanes, clear, &mut self.v, v);
+        put_bits(lanes, clear, &mut self.cluster, NONE);
+        let mut left = pending & !clear;
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;
-            if hits.clear >> lane & 1 != 0 {
-                self.set(lane, hits.at(lane));
-            } else {
-                self.settle(arena, &line(origin, dir, lane), lane);
-            }
+            self.settle(arena, &line(origin, dir, lane), lane);
         }
     }
+}
+
+/// Replaces the values of some lanes.
+#[inline(always)]
+fn put<L: Lanes>(lanes: L, bits: u32, to: &mut [f32; WIDTH], x: L::F32) {
+    *to = lanes.store(lanes.select(lanes.mask(bits), x, lanes.load(to)));
+}
+
+/// Replaces the values of some lanes by one.
+#[inline(always)]
+fn put_bits<L: Lanes>(lanes: L, bits: u32, to: &mut [u32; WIDTH], x: u32) {
+    put(lanes, bits, bytemuck::cast_mut(to), lanes.splat(f32::from_bits(x)));
 }
 
 /// One of eight rays, but for its interval.

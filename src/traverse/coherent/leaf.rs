@@ -172,7 +172,10 @@ impl<L: Doubles, Q: Query> Coherent<'_, '_, L, Q> {
         while bits != 0 {
             let triangle = bits.trailing_zeros();
             bits &= bits - 1;
-            closer |= self.hit(i, lane, Source { cluster: index, lane: triangle }, certain.at(triangle));
+            let sure = if certain.lanes >> triangle & 1 != 0 { 1 << lane } else { 0 };
+            let at = |x: L::F32| lanes.splat(lanes.lane(x, triangle as usize));
+            let bounds = [at(certain.low), at(certain.high)];
+            closer |= self.hits(i, 1 << lane, sure, bounds, Source { cluster: index, lane: triangle }) != 0;
         }
         closer
     }
@@ -195,16 +198,13 @@ impl<L: Doubles, Q: Query> Coherent<'_, '_, L, Q> {
                 let packet = &self.group.packets[i];
                 let ray = packet.lanes(lanes);
                 let bounded = prepared.bounded(lanes, &ray);
-                let mut bits = bounded.possible(lanes, &ray) & (rays >> (8 * i)) as u32 & 0xff;
+                let bits = bounded.possible(lanes, &ray) & (rays >> (8 * i)) as u32 & 0xff;
                 if bits != 0 {
                     let (unit, after) = (lanes.load(&packet.unit), lanes.load(&packet.after));
                     let certain = Unscaled::new(lanes, &bounded.certain(lanes, &ray), unit, after);
-                    while bits != 0 {
-                        let lane = bits.trailing_zeros();
-                        bits &= bits - 1;
-                        let closer = self.hit(i, lane as usize, source, certain.at(lane));
-                        narrower |= u32::from(closer) << i;
-                    }
+                    let bounds = [certain.low, certain.high];
+                    let closer = self.hits(i, bits, bits & certain.lanes, bounds, source);
+                    narrower |= u32::from(closer != 0) << i;
                 }
             }
         }
@@ -215,21 +215,24 @@ impl<L: Doubles, Q: Query> Coherent<'_, '_, L, Q> {
         }
     }
 
-    /// A ray may hit a triangle, or does so with t between two bounds; whether the hit is closer than those before.
+    /// Rays of a packet may hit a triangle; some certainly do, with t between two bounds. The lanes whose hit is closer
+    /// than those before.
     #[inline(always)]
-    fn hit(&mut self, i: usize, lane: usize, source: Source, certain: Option<[f32; 2]>) -> bool {
+    fn hits(&mut self, i: usize, possible: u32, certain: u32, bounds: [L::F32; 2], source: Source) -> u32 {
+        let lanes = self.lanes;
         let prim = self.arena.clusters[source.cluster as usize].ids()[source.lane as usize];
-        let packet = &mut self.group.packets[i];
-        if let Some(bounds) = certain {
-            let noted = match Q::WANTED {
-                Wanted::Any => packet.nearest.note(lane, bounds, prim),
-                _ => packet.nearest.defer(lane, bounds, prim, source),
-            };
-            if let Some(closer) = noted {
-                return closer;
-            }
+        let nearest = &mut self.group.packets[i].nearest;
+        let [mut closer, unclear] = match Q::WANTED {
+            Wanted::Any => nearest.note(lanes, certain, bounds[1], prim),
+            _ => nearest.defer(lanes, certain, bounds, prim, source),
+        };
+        let mut left = possible & !certain | unclear;
+        while left != 0 {
+            let lane = left.trailing_zeros();
+            left &= left - 1;
+            closer |= u32::from(self.decide(i, lane as usize, source, prim)) << lane;
         }
-        self.decide(i, lane, source, prim)
+        closer
     }
 
     #[cold]
@@ -257,27 +260,21 @@ impl<L: Doubles, Q: Query> Coherent<'_, '_, L, Q> {
 }
 
 /// [`Certain`] hits in units of the rays' own t.
-struct Unscaled {
+struct Unscaled<L: Lanes> {
     lanes: u32,
-    low: [f32; WIDTH],
-    high: [f32; WIDTH],
+    low: L::F32,
+    high: L::F32,
 }
 
-impl Unscaled {
+impl<L: Lanes> Unscaled<L> {
     /// Powers of two scale without rounding, where nothing overflows or underflows; what is not after the open
     /// end of the interval, which the scaled one contains, is not certain. The other end is left to [`Nearest`](
     /// crate::traverse::nearest::Nearest).
     #[inline(always)]
-    fn new<L: Lanes>(lanes: L, certain: &Certain<L>, unit: L::F32, after: L::F32) -> Self {
+    fn new(lanes: L, certain: &Certain<L>, unit: L::F32, after: L::F32) -> Self {
         let (low, high) = (certain.low * unit, certain.high * unit);
         let within = lanes.less(lanes.max(after, lanes.splat(2f32.powi(-LONGEST))), low)
             & lanes.less(high, lanes.splat(2f32.powi(LONGEST)));
-        Self { lanes: certain.lanes & lanes.bits(within), low: lanes.store(low), high: lanes.store(high) }
-    }
-
-    /// The bounds of t in a lane that is certain.
-    #[inline(always)]
-    fn at(&self, lane: u32) -> Option<[f32; 2]> {
-        (self.lanes >> lane & 1 != 0).then(|| [self.low[lane as usize], self.high[lane as usize]])
+        Self { lanes: certain.lanes & lanes.bits(within), low, high }
     }
 }

@@ -136,7 +136,9 @@ impl Scale {
     #[inline(always)]
     fn scaled(self, ray: &Ray) -> Ray {
         let dir = (ray.dir.as_dvec3() * self.factor).as_vec3();
-        Ray { dir, t_min: -self.time(-ray.t_min), t_max: self.time(ray.t_max), ..*ray }
+        // Zero is exact, and the least number that is not is slow to multiply by.
+        let t_min = if ray.t_min == 0.0 { 0.0 } else { -self.time(-ray.t_min) };
+        Ray { dir, t_min, t_max: self.time(ray.t_max), ..*ray }
     }
 
     /// t in units of the scaled direction, or an ulp or two more; what is finite stays so.
@@ -323,6 +325,7 @@ mod tests {
             let scaled = Scale::of(dir).scaled(&Ray::new([0.0; 3], dir)).dir;
             let kept = (Scale::LEAST..=Scale::MOST).contains(&x);
             assert!(if kept { scaled == dir } else { (0.5..1.0).contains(&-scaled.y) }, "{x}: {scaled}");
+            assert_eq!(Scale::of(dir).scaled(&Ray::new([0.0; 3], dir)).t_min, 0.0);
         }
         let scale = Scale::of(Vec3::new(1e-30, 0.0, 0.0));
         assert_eq!(scale.time(f32::INFINITY), f32::INFINITY);

@@ -239,7 +239,11 @@ impl<'a> Group<'a> {
             out.scaled[axis] = lanes.store(lanes.narrow(widened(lanes, &out.dir[axis]) * factor));
         }
         let scale = lanes.load8(&out.scale);
-        out.t_min = lanes.store(-above(lanes, lanes.splat8(0.0) - widened(lanes, &out.after) * scale));
+        let t_min = -above(lanes, lanes.splat8(0.0) - widened(lanes, &out.after) * scale);
+        // Zero is exact, and what is added to it would be subnormal: slow to multiply by, for each triangle.
+        let zero = lanes.splat(0.0);
+        let starts = lanes.at_most(lanes.abs(lanes.load(&out.after)), zero);
+        out.t_min = lanes.store(lanes.select(starts, zero, t_min));
         out.t_max = lanes.store(above(lanes, widened(lanes, &out.nearest.t) * scale));
         fit == 0xff
     }

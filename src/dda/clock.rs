@@ -1,5 +1,7 @@
 //! When a path comes to a t: its time, rounded so that no hit comes after it.
 
+use crate::lanes::{greater, lesser};
+
 /// Turns t into time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clock {
@@ -67,18 +69,6 @@ impl Limit {
         }
         changed
     }
-}
-
-/// The lesser one of two numbers, `b` where one is NaN: one instruction, as f64's own is not.
-#[inline(always)]
-pub(super) fn lesser(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-/// The greater one of two numbers, likewise.
-#[inline(always)]
-fn greater(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }
 
 /// No less than the largest distance that rounds to `t`: hits count if their rounded distance is within.

@@ -20,8 +20,7 @@ mod quad;
 
 use crate::arena::Grid;
 use crate::descent::first_exit;
-use crate::lanes::{Lanes, axes};
-use clock::lesser;
+use crate::lanes::{Lanes, axes, lesser};
 pub(crate) use clock::{Clock, Limit};
 pub(crate) use path::{Clip, Path};
 pub(crate) use quad::Quad;

@@ -1,9 +1,9 @@
 //! A ray clipped to a grid.
 
-use super::clock::{Clock, lesser, rounds_to};
+use super::clock::{Clock, rounds_to};
 use crate::arena::Grid;
 use crate::exact::{two_product, two_sum};
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, lesser};
 use crate::ray::Ray;
 
 /// Origins so near, in sizes of the grid, that rounding stays within what the grid is larger than the scene.

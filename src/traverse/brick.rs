@@ -4,42 +4,43 @@
 //! times 16 comparisons (x and y, x and z, y and z) say it for all 64 voxels. In the mirrored order of
 //! [`Path`](crate::dda::Path), bit x + 4 y + 16 z, the lowest set bit is the next voxel on the path.
 
+use glam::Vec4;
+
 use crate::lanes::{Lanes, WIDTH};
 
-/// When a path enters a brick's lower planes, and how long it takes to cross one voxel, by axis.
+/// When a path enters a brick's lower planes, and how long it takes to cross one voxel, by axis; the fourth lane
+/// repeats the third.
+///
+/// As vectors, in which they are put on the stack of bricks and taken from it: a vector is not loaded before single
+/// values stored to it have left the processor.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BrickPath {
-    enter: [f32; 3],
-    width: [f32; 3],
+    enter: Vec4,
+    width: Vec4,
     /// More than the rounding errors of all times in the cell of the top grid, so that every voxel is
     /// met at the times at which the path is in it. Smaller voxels inherit the errors, hence the slack.
-    slack: [f32; 3],
+    slack: Vec4,
 }
 
 impl BrickPath {
     /// For the brick that fills a cell of the top grid.
     #[inline(always)]
-    pub(crate) fn new(enter: [f32; 3], width: [f32; 3]) -> Self {
-        let slack = |axis: usize| (enter[axis].abs() + 4.0 * width[axis]) * 2f32.powi(-20);
-        Self { enter, width, slack: [slack(0), slack(1), slack(2)] }
+    pub(crate) fn new([x, y, z]: [f32; 3], [u, v, w]: [f32; 3]) -> Self {
+        let (enter, width) = (Vec4::new(x, y, z, z), Vec4::new(u, v, w, w));
+        Self { enter, width, slack: (enter.abs() + 4.0 * width) * 2f32.powi(-20) }
     }
 
     /// The same for the brick that fills the voxel with this index (x + 4 y + 16 z, mirrored).
     #[inline(always)]
     pub(crate) fn child(&self, index: u32) -> Self {
-        let at = |axis: usize| (index >> (2 * axis) & 3) as f32;
-        Self {
-            enter: std::array::from_fn(|axis| self.enter[axis] + at(axis) * self.width[axis]),
-            width: self.width.map(|w| 0.25 * w),
-            slack: self.slack,
-        }
+        let enter = self.enter + PLACES[index as usize % PLACES.len()] * self.width;
+        Self { enter, width: 0.25 * self.width, slack: self.slack }
     }
 
     /// When the path enters the brick at the earliest, given the slack.
     #[inline(always)]
     pub(crate) fn earliest(&self) -> f32 {
-        let at = |axis: usize| self.enter[axis] - self.slack[axis];
-        at(0).max(at(1)).max(at(2))
+        (self.enter - self.slack).max_element()
     }
 
     /// The voxels that the path meets from time 0 to `limit`.
@@ -60,13 +61,25 @@ impl BrickPath {
     /// When the path is between the planes of the voxels with these indices along an axis.
     #[inline(always)]
     fn interval<L: Lanes>(&self, lanes: L, axis: usize, index: &[f32; WIDTH], limit: f32) -> Interval<L> {
-        let (enter, width, slack) = (self.enter[axis], self.width[axis], self.slack[axis]);
-        let (index, splat) = (lanes.load(index), lanes.splat(width));
-        let start = lanes.mul_add(index, splat, lanes.splat(enter - slack));
-        let end = lanes.mul_add(index, splat, lanes.splat(enter + width + slack));
+        let (first, last) = (self.enter - self.slack, self.enter + self.width + self.slack);
+        let (index, width) = (lanes.load(index), lanes.splat(self.width[axis]));
+        let start = lanes.mul_add(index, width, lanes.splat(first[axis]));
+        let end = lanes.mul_add(index, width, lanes.splat(last[axis]));
         (lanes.max(start, lanes.splat(0.0)), lanes.min(end, lanes.splat(limit)))
     }
 }
+
+/// The indices along the axes of each voxel.
+const PLACES: [Vec4; 64] = {
+    let mut places = [Vec4::ZERO; 64];
+    let mut i = 0;
+    while i < 64 {
+        let z = (i >> 4) as f32;
+        places[i] = Vec4::new((i & 3) as f32, (i >> 2 & 3) as f32, z, z);
+        i += 1;
+    }
+    places
+};
 
 /// Start and end.
 type Interval<L> = (<L as Lanes>::F32, <L as Lanes>::F32);

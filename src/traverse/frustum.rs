@@ -10,7 +10,7 @@
 use super::group::Group;
 use crate::arena::{BoxGroup, Grid};
 use crate::bundle::Bundle;
-use crate::lanes::{Lanes, WIDTH};
+use crate::lanes::{Lanes, WIDTH, greater, lesser};
 
 /// By how much the bounds are enlarged, in sizes of the grid.
 const SLACK: f32 = 1.0 / (1u32 << 16) as f32;
@@ -71,14 +71,14 @@ impl Frustum {
             high - low
         };
         let [a, b] = self.span;
-        width(0, a).max(width(0, b)).max(width(1, a)).max(width(1, b))
+        greater(greater(width(0, a), width(0, b)), greater(width(1, a), width(1, b)))
     }
 
     /// The least and greatest place along a minor axis from `a` to `b`.
     #[inline(always)]
     pub(crate) fn range(&self, side: usize, a: f32, b: f32) -> [f32; 2] {
         let line = |k: usize, x: f32| self.at[side][k] + self.slope[side][k] * x;
-        [line(0, a).min(line(0, b)), line(1, a).max(line(1, b))]
+        [lesser(line(0, a), line(0, b)), greater(line(1, a), line(1, b))]
     }
 
     /// The same lines in the coordinates of the scene.
@@ -148,10 +148,10 @@ fn bounds<L: Lanes>(lanes: L, group: &Group<'_>, side: usize, x: f32) -> [f32; 2
 
 #[inline(always)]
 fn least(x: &[f32; WIDTH]) -> f32 {
-    x.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a })
+    x.iter().fold(f32::INFINITY, |a, &b| lesser(b, a))
 }
 
 #[inline(always)]
 fn greatest(x: &[f32; WIDTH]) -> f32 {
-    x.iter().fold(f32::NEG_INFINITY, |a, &b| if b > a { b } else { a })
+    x.iter().fold(f32::NEG_INFINITY, |a, &b| greater(b, a))
 }

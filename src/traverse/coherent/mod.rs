@@ -18,7 +18,7 @@ use super::frustum::{Frustum, span};
 use super::group::{Group, Packet};
 use crate::arena::{Arena, Voxel};
 use crate::bundle::Bundle;
-use crate::lanes::Doubles;
+use crate::lanes::{Doubles, greater, lesser};
 use crate::query::Query;
 use leaf::Mailbox;
 
@@ -108,13 +108,14 @@ impl<'a, 'b, L: Doubles, Q: Query> Coherent<'a, 'b, L, Q> {
                 return;
             }
             let (a, b) = (slice as f32, slice as f32 + 1.0);
-            let (a, b) = (a.max(self.frustum.span[0]), b.min(self.frustum.span[1]));
+            let (a, b) = (greater(a, self.frustum.span[0]), lesser(b, self.frustum.span[1]));
             // Beyond the first and last cell is the grid's border, which rounding may reach.
             if a <= b {
                 let range = |side: usize| {
                     let most = grid.dims[self.group.others[side]] as f32;
                     let [low, high] = self.frustum.range(side, a, b);
-                    (low < most && high >= 0.0).then(|| low.max(0.0) as u32..=high.min(most - 1.0) as u32)
+                    (low < most && high >= 0.0)
+                        .then(|| greater(low, 0.0) as u32..=lesser(high, most - 1.0) as u32)
                 };
                 if let (Some(us), Some(vs)) = (range(0), range(1)) {
                     for j in vs {
@@ -169,7 +170,7 @@ impl<'a, 'b, L: Doubles, Q: Query> Coherent<'a, 'b, L, Q> {
             }
             let slice = if self.group.rises { k } else { 3 - k };
             let a = lo[main] + slice as f32 * side;
-            let (from, to) = (a.max(self.frustum.span[0]), (a + side).min(self.frustum.span[1]));
+            let (from, to) = (greater(a, self.frustum.span[0]), lesser(a + side, self.frustum.span[1]));
             if from > to {
                 continue;
             }
@@ -177,7 +178,7 @@ impl<'a, 'b, L: Doubles, Q: Query> Coherent<'a, 'b, L, Q> {
                 let [low, high] = self.frustum.range(s, from, to);
                 let (low, high) = ((low - lo[axis]) / side, (high - lo[axis]) / side);
                 if low < 4.0 && high >= 0.0 {
-                    let (low, high) = (low.max(0.0) as u32, high.min(3.0) as u32);
+                    let (low, high) = (greater(low, 0.0) as u32, lesser(high, 3.0) as u32);
                     (2u32 << high) - (1 << low)
                 } else {
                     0

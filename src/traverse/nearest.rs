@@ -92,8 +92,7 @@ impl Nearest {
     /// Takes hits of one triangle that are certain, t between `low` and `high`, where they are closer. The lanes in
     /// which that was done, and those in which only decisions tell.
     ///
-    /// All lanes at once, not only for speed: a vector is not loaded before single values stored to it have left
-    /// the processor.
+    /// In all lanes at once: a vector is not loaded before single values stored to it have left the processor.
     #[inline(always)]
     pub(crate) fn defer<L: Lanes>(
         &mut self,

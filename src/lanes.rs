@@ -260,12 +260,19 @@ impl<S: Simd> Lanes for Dispatched<S> {
 macro_rules! dispatch {
     ($isa:expr, $lanes:ident => $body:expr) => {
         match $isa.level() {
-            // The others are compiled into the caller, where they would make all pay for their registers.
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             fearless_simd::Level::Avx2(simd) => $crate::lanes::dispatch!(@ simd, $lanes => $body),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             fearless_simd::Level::Avx512(simd) => $crate::lanes::dispatch!(@ simd, $lanes => $body),
-            _ => $crate::lanes::apart(|| $crate::lanes::dispatch_here!($isa, $lanes => $body)),
+            // Apart, as the target's own set is compiled into the caller, where it would make all pay for its
+            // registers.
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+            level => {
+                let simd = level.as_sse2().expect("every level has what the target has");
+                $crate::lanes::apart(|| $crate::lanes::dispatch!(@ simd, $lanes => $body))
+            }
+            #[cfg(not(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2")))]
+            _ => $crate::lanes::dispatch_here!($isa, $lanes => $body),
         }
     };
     (@ $simd:ident, $lanes:ident => $body:expr) => {{
@@ -302,7 +309,13 @@ pub struct Isa(Level);
 impl Isa {
     /// The best one of this processor.
     pub fn detect() -> Self {
-        Self(Level::new())
+        let level = Level::new();
+        // What SSE4.2 has besides is not worth another copy of all walks.
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        if let (Level::Sse4_2(_), Some(simd)) = (level, level.as_sse2()) {
+            return Self(Level::Sse2(simd));
+        }
+        Self(level)
     }
 
     /// The one that the crate is compiled for.
@@ -317,7 +330,6 @@ impl Isa {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         let all = [
             level.as_sse2().map(Level::Sse2),
-            level.as_sse4_2().map(Level::Sse4_2),
             level.as_avx2().map(Level::Avx2),
             level.as_avx512().map(Level::Avx512),
         ];
@@ -333,13 +345,11 @@ impl Isa {
 }
 
 impl std::fmt::Display for Isa {
-    /// `SSE2`, `SSE4.2`, `AVX2`, `AVX-512`, or what this processor's family has instead.
+    /// `SSE2`, `AVX2`, `AVX-512`, or what this processor's family has instead.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self.0 {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             Level::Sse2(_) => "SSE2",
-            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Level::Sse4_2(_) => "SSE4.2",
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             Level::Avx2(_) => "AVX2",
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

@@ -11,6 +11,7 @@
 //! Brute force has clusters alone: a list structure of one level without words.
 
 use bytemuck::{Pod, Zeroable};
+use glam::Vec4;
 
 use crate::aabb::Aabb;
 use crate::cluster::Cluster;
@@ -84,10 +85,15 @@ impl Reference {
     }
 }
 
-/// The occupied ones of 4 x 4 x 4 voxels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+/// The occupied ones of 4 x 4 x 4 voxels that fill a box around all that is in the divided voxel.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Brick {
+    /// The box's lower corner by axis, relative to the grid's, in cells of the top grid; the fourth lane repeats the
+    /// third.
+    pub(crate) lo: Vec4,
+    /// The sides of a voxel, above 0, likewise.
+    pub(crate) side: Vec4,
     /// Bit x + 4 y + 16 z: that voxel is not empty.
     pub(crate) occupied: u64,
     /// The index of the word of the first occupied voxel; the others follow in the order of the bits.
@@ -108,7 +114,7 @@ pub(crate) struct BoxGroup {
 }
 
 const _: () = assert!(size_of::<VoxelWord>() == 4 && size_of::<Reference>() == 4);
-const _: () = assert!(size_of::<Brick>() == 16 && size_of::<BoxGroup>() == 224);
+const _: () = assert!(size_of::<Brick>() == 48 && size_of::<BoxGroup>() == 224);
 
 /// The uniform grid on top: cubic voxels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -194,11 +200,6 @@ impl Grid {
         let odd = self.dims.map(|n| 0.5 * f64::from(n % 2) * self.cell);
         let lo = std::array::from_fn(|axis| self.lo[axis] - odd[axis]);
         Self::new(lo, 2.0 * self.cell, self.dims.map(|n| n.div_ceil(2)))
-    }
-
-    /// The lower corner of the voxel with these indices.
-    pub(crate) fn corner(&self, index: [u32; 3]) -> [f64; 3] {
-        std::array::from_fn(|axis| self.lo[axis] + f64::from(index[axis]) * self.cell)
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use glam::Vec4;
+
 use crate::arena::{Arena, BRICK_LEVELS, Form, Grid, LIST_LEVELS, Voxel, VoxelWord};
 use crate::cluster::Cluster;
 use crate::lanes::WIDTH;
@@ -97,6 +99,7 @@ macro_rules! require {
 /// - every triangle of the mesh is in at most one cluster, and lanes without one repeat the first;
 /// - corners and the grid are finite, and the grid has its words;
 /// - every word, reference, brick and box group is used by exactly one voxel, in bounds;
+/// - bricks are where they can be, and their voxels have sides;
 /// - there are no more levels than the walks have room for;
 /// - every cluster is referred to, a leaf refers to a cluster once;
 /// - padding is zero, and boxes that hold no cluster are empty.
@@ -240,6 +243,9 @@ impl Check<'_> {
                     brick.occupied != 0 && brick.padding == 0,
                     "brick {first} is empty or its padding is not"
                 );
+                let (lo, side) = (brick.lo, brick.side);
+                let is_box = lo.is_finite() && side.is_finite() && side.cmpgt(Vec4::ZERO).all();
+                require!(is_box, "brick {first} is at {lo} with voxels of {side}");
                 let start = brick.first as usize;
                 start..start + brick.occupied.count_ones() as usize
             }

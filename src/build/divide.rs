@@ -3,7 +3,7 @@
 //! ```text
 //! voxel(items):  empty                                    if there are no items
 //!                leaf                                     if the policy does not divide
-//!                divided, each part by voxel(its items)   if that costs less than a leaf
+//!                divided, each part by voxel(its items)   if even with leaves for parts that costs less
 //! ```
 //!
 //! One work list (`items`, a stack) serves all levels, as does one of where the items of each part start.
@@ -12,15 +12,22 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use bytemuck::Zeroable;
+use glam::Vec4;
+
 use super::options::BuildError;
 use super::piece::Piece;
 use super::policy::Policy;
 use super::split::{Limits, sort};
-use super::voxel::{Cube, Item, VoxelView, scatter};
+use super::voxel::{Cuboid, Item, VoxelView, Voxels, scatter};
 use crate::aabb::Aabb;
 use crate::arena::{BoxGroup, Brick, Form, Grid, Reference, VoxelWord};
 use crate::cluster::Cluster;
 use crate::lanes::{Lanes, WIDTH};
+
+/// A brick whose clusters are in this many of its parts or more on average, as long slivers are, takes more memory and
+/// time to build than it saves.
+const MOST_PARTS: usize = 4;
 
 /// What all voxels have in common.
 pub(super) struct Space<'a, L, P> {
@@ -77,53 +84,49 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
     /// Makes a voxel of the top grid.
     pub(super) fn top_voxel(
         &mut self,
-        index: [u32; 3],
+        cube: Cuboid,
         items: impl Iterator<Item = Item>,
     ) -> Result<(), BuildError> {
         self.items.extend(items);
-        let (items, cube) = (0..self.items.len(), Cube::of(self.space.grid, index));
+        let items = 0..self.items.len();
         let leaf_cost = self.space.policy.leaf_cost(&self.view(items.clone(), cube));
-        let word = self.voxel(items, cube, leaf_cost, 0)?.0;
+        let word = self.voxel(items, cube, leaf_cost, 0)?;
         self.items.clear();
         self.piece.top.push(word);
         Ok(())
     }
 
-    fn view(&self, range: Range<usize>, cube: Cube) -> VoxelView<'_> {
+    fn view(&self, range: Range<usize>, cube: Cuboid) -> VoxelView<'_> {
         let bounds = cube.enlarged(self.margin);
         VoxelView { items: &self.items[range], clusters: self.space.clusters, bounds }
     }
 
-    /// Makes a voxel and returns its word and cost.
+    /// Makes a voxel and returns its word.
     fn voxel(
         &mut self,
         range: Range<usize>,
-        cube: Cube,
+        cube: Cuboid,
         leaf_cost: f32,
         depth: u32,
-    ) -> Result<(VoxelWord, f32), BuildError> {
+    ) -> Result<VoxelWord, BuildError> {
         if range.is_empty() {
-            return Ok((VoxelWord::EMPTY, 0.0));
+            return Ok(VoxelWord::EMPTY);
         }
         let view = self.view(range.clone(), cube);
         let divides = self.may_divide(cube, depth) && self.space.policy.divides(&view, leaf_cost);
-        if divides && self.separates(&view, cube.side) {
-            let mark = self.piece.mark();
-            let divided = self.divide(range.clone(), cube, leaf_cost, depth)?;
-            if let Some((word, cost)) = divided
-                && cost < leaf_cost
-            {
-                return Ok((word, cost));
-            }
-            self.piece.roll_back(mark);
+        if divides
+            && self.separates(&view, cube.longest())
+            && let Some(word) = self.divide(range.clone(), cube, leaf_cost, depth)?
+        {
+            return Ok(word);
         }
-        Ok((self.leaf(range)?, leaf_cost))
+        self.leaf(range)
     }
 
-    fn may_divide(&self, cube: Cube, depth: u32) -> bool {
+    fn may_divide(&self, cube: Cuboid, depth: u32) -> bool {
         let references = self.piece.references.len() + WIDTH * self.piece.groups.len();
         depth < self.space.limits.levels
-            && cube.side / f64::from(self.form.divisions()) >= self.least_side
+            && cube.longest() / f64::from(self.form.divisions()) >= self.least_side
             && references < self.references
     }
 
@@ -138,19 +141,27 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
     fn divide(
         &mut self,
         range: Range<usize>,
-        cube: Cube,
+        cube: Cuboid,
         leaf_cost: f32,
         depth: u32,
-    ) -> Result<Option<(VoxelWord, f32)>, BuildError> {
-        let n = self.form.divisions();
-        let parts = Grid::new(cube.lo, cube.side / f64::from(n), [n; 3]);
+    ) -> Result<Option<VoxelWord>, BuildError> {
+        let parts = match self.form {
+            Form::Lists { divisions } => Parts::of_all(cube, divisions),
+            Form::Bricks => self.fitted(range.clone(), cube),
+        };
         let (floor, start) = (self.items.len(), self.starts.len());
-        self.list_parts(range.clone(), &parts)?;
+        self.list_parts(range.clone(), &parts.voxels)?;
         let mut divided = None;
         if self.gains(range) {
-            sort(self.parts.iter().copied(), parts.len(), Item::NONE, &mut self.items, &mut self.starts);
+            sort(
+                self.parts.iter().copied(),
+                parts.voxels.len(),
+                Item::NONE,
+                &mut self.items,
+                &mut self.starts,
+            );
             let costs = self.costs.len();
-            if self.least_cost(&parts, start) < leaf_cost {
+            if self.cost_in_leaves(&parts, start) < leaf_cost {
                 divided = Some(self.node(&parts, start, costs, depth)?);
             }
             self.costs.truncate(costs);
@@ -165,66 +176,86 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
         self.starts[start + i]..self.starts[start + i + 1]
     }
 
-    /// What a divided voxel costs at least; puts what its parts cost as leaves on top of `costs`.
-    fn least_cost(&mut self, parts: &Grid, start: usize) -> f32 {
+    /// The parts of a brick around the items of a voxel, but no smaller than the least side.
+    ///
+    /// Where the items are flat, it begins where they do, so that they are in one layer of it.
+    fn fitted(&self, items: Range<usize>, cube: Cuboid) -> Parts {
+        let grid = self.space.grid;
+        let all = self.items[items].iter().fold(Aabb::EMPTY, |all, item| all.union(ordered(&item.bounds)));
+        let least = (self.least_side / grid.cell) as f32;
+        let (mut lo, mut side) = ([0.0; 3], [0.0; 3]);
+        for axis in 0..3 {
+            let hi = in_cells(all.hi[axis], self.margin, axis, grid).next_up();
+            lo[axis] = in_cells(all.lo[axis], -self.margin, axis, grid).next_down();
+            side[axis] = (0.25 * (hi - lo[axis])).next_up().max(least);
+        }
+        let place = |axis: usize| grid.lo[axis] + f64::from(lo[axis]) * grid.cell;
+        let sides = side.map(|side| f64::from(side) * grid.cell);
+        let voxels = Voxels::new(std::array::from_fn(place), sides, [4; 3]);
+        let area = |cube: Cuboid| cube.enlarged(self.margin).half_area();
+        let chance = (area(voxels.whole()) / area(cube)).min(1.0);
+        let four = |[x, y, z]: [f32; 3]| Vec4::new(x, y, z, z);
+        Parts { voxels, chance, brick: Brick { lo: four(lo), side: four(side), ..Brick::zeroed() } }
+    }
+
+    /// What a divided voxel costs if its parts are leaves; puts what each of them costs on top of `costs`.
+    fn cost_in_leaves(&mut self, parts: &Parts, start: usize) -> f32 {
         let policy = self.space.policy;
         let (mut sum, mut count) = (0.0, 0);
-        for i in 0..parts.len() {
+        for i in 0..parts.voxels.len() {
             let items = self.part(start, i);
             let leaf_cost = if items.is_empty() {
                 0.0
             } else {
                 count += 1;
-                policy.leaf_cost(&self.view(items, part_cube(parts, i as u32)))
+                policy.leaf_cost(&self.view(items, parts.voxels.nth(i)))
             };
             self.costs.push(leaf_cost);
-            sum += leaf_cost.min(policy.least_cost());
+            sum += leaf_cost;
         }
-        policy.node_cost(sum, count)
+        policy.node_cost(sum, count, parts.chance)
     }
 
     /// Makes the parts of a divided voxel, whose items start at `starts[start..]`, and which cost
     /// `costs[costs..]` as leaves.
     fn node(
         &mut self,
-        parts: &Grid,
+        parts: &Parts,
         start: usize,
         costs: usize,
         depth: u32,
-    ) -> Result<(VoxelWord, f32), BuildError> {
+    ) -> Result<VoxelWord, BuildError> {
         let is_occupied = |i: usize| !self.part(start, i).is_empty();
-        let count = (0..parts.len()).filter(|&i| is_occupied(i)).count();
+        let len = parts.voxels.len();
         let (node, first) = match self.form {
-            Form::Lists { .. } => self.reserve_list(parts.len())?,
+            Form::Lists { .. } => self.reserve_list(len)?,
             Form::Bricks => {
-                let mask = (0..parts.len()).map(|i| u64::from(is_occupied(i)) << i).sum();
-                self.reserve_brick(mask)?
+                let mask = (0..len).map(|i| u64::from(is_occupied(i)) << i).sum();
+                self.reserve_brick(Brick { occupied: mask, ..parts.brick })?
             }
         };
-        let (mut sum, mut rank) = (0.0, 0);
-        for i in 0..parts.len() {
+        let mut rank = 0;
+        for i in 0..len {
             let items = self.part(start, i);
             if !items.is_empty() {
-                let (word, cost) =
-                    self.voxel(items, part_cube(parts, i as u32), self.costs[costs + i], depth + 1)?;
+                let word = self.voxel(items, parts.voxels.nth(i), self.costs[costs + i], depth + 1)?;
                 let slot = if self.form == Form::Bricks { rank } else { i };
                 self.piece.words[first + slot] = word;
-                sum += cost;
                 rank += 1;
             }
         }
-        Ok((node, self.space.policy.node_cost(sum, count as u32)))
+        Ok(node)
     }
 
     /// Lists the items with the parts of the voxel that they overlap.
-    fn list_parts(&mut self, range: Range<usize>, grid: &Grid) -> Result<(), BuildError> {
+    fn list_parts(&mut self, range: Range<usize>, voxels: &Voxels) -> Result<(), BuildError> {
         self.parts.clear();
         let space = self.space;
         space.lanes.vectorize(
             #[inline(always)]
             || {
                 for item in &self.items[range] {
-                    scatter(space.lanes, space.clusters, item, grid, self.margin, |part, item| {
+                    scatter(space.lanes, space.clusters, item, voxels, self.margin, |part, item| {
                         self.parts.push((part, item));
                     });
                 }
@@ -236,12 +267,12 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
     /// Whether division spares a ray through the voxel some tests, given that it meets a part with a
     /// chance of 1 / N^2 (the ratio of the areas).
     ///
-    /// Without this, a threshold below the number of triangles around a vertex would never be met there,
-    /// and a cost model would look into parts of parts where nothing can be told apart.
+    /// Without this, a threshold below the number of triangles around a vertex would never be met there. Bricks are
+    /// judged by their cost; here only by what they take.
     fn gains(&self, whole: Range<usize>) -> bool {
         let n = self.form.divisions() as usize;
         if self.form == Form::Bricks {
-            return self.parts.len() < n * n * whole.len();
+            return self.parts.len() < MOST_PARTS * whole.len();
         }
         let triangles = |item: &Item| item.mask.count_ones() as usize;
         let parts: usize = self.parts.iter().map(|(_, item)| triangles(item)).sum();
@@ -259,13 +290,13 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
     }
 
     /// Makes room for the occupied parts of a divided voxel: its word, and the index of the first one's.
-    fn reserve_brick(&mut self, occupied: u64) -> Result<(VoxelWord, usize), BuildError> {
+    fn reserve_brick(&mut self, brick: Brick) -> Result<(VoxelWord, usize), BuildError> {
         let too_large = BuildError::TooLarge { what: "voxels" };
         let piece = &mut self.piece;
         let words = piece.words.len();
         let Some(first) = u32::try_from(words).ok() else { return Err(too_large) };
-        piece.words.resize(words + occupied.count_ones() as usize, VoxelWord::EMPTY);
-        piece.bricks.push(Brick { occupied, first, padding: 0 });
+        piece.words.resize(words + brick.occupied.count_ones() as usize, VoxelWord::EMPTY);
+        piece.bricks.push(Brick { first, ..brick });
         let node = VoxelWord::node(piece.bricks.len() - 1);
         self.check_memory()?;
         Ok((node.ok_or(too_large)?, words))
@@ -306,10 +337,31 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
     }
 }
 
-/// One part of a divided voxel.
-fn part_cube(parts: &Grid, i: u32) -> Cube {
-    let [n, _, _] = parts.dims;
-    Cube::of(parts, [i % n, i / n % n, i / n / n])
+/// What a voxel is divided into.
+struct Parts {
+    voxels: Voxels,
+    /// Of a ray through the voxel to meet them at all.
+    chance: f32,
+    /// Where they are, in a structure of bricks.
+    brick: Brick,
+}
+
+impl Parts {
+    /// The whole voxel.
+    fn of_all(cube: Cuboid, n: u32) -> Self {
+        let voxels = Voxels::new(cube.lo, cube.side.map(|side| side / f64::from(n)), [n; 3]);
+        Self { voxels, chance: 1.0, brick: Brick::zeroed() }
+    }
+}
+
+/// What only rounding has let overlap a voxel may lie beside it: its box without sides below 0.
+fn ordered(b: &Aabb) -> Aabb {
+    Aabb { lo: b.lo.min(b.hi), hi: b.lo.max(b.hi) }
+}
+
+/// A coordinate moved by the margin, relative to the grid's lower corner, in cells.
+fn in_cells(x: f32, margin: f64, axis: usize, grid: &Grid) -> f32 {
+    ((f64::from(x) + margin - grid.lo[axis]) / grid.cell) as f32
 }
 
 /// The boxes of up to eight items, enlarged by the margin, in cells of the grid.
@@ -317,13 +369,10 @@ fn group(items: &[Item], grid: &Grid, margin: f64, last: bool) -> BoxGroup {
     let mut group =
         BoxGroup { planes: [[[f32::INFINITY; WIDTH]; 3]; 2], clusters: [Reference::new(0, last); WIDTH] };
     for (lane, item) in items.iter().enumerate() {
-        // What only rounding has let overlap the voxel may lie beside it.
-        let Aabb { lo, hi } = item.bounds;
-        let (lo, hi) = (lo.min(hi), lo.max(hi));
+        let Aabb { lo, hi } = ordered(&item.bounds);
         for axis in 0..3 {
-            let local = |x: f32, margin: f64| ((f64::from(x) + margin - grid.lo[axis]) / grid.cell) as f32;
-            group.planes[0][axis][lane] = local(lo[axis], -margin).next_down();
-            group.planes[1][axis][lane] = local(hi[axis], margin).next_up();
+            group.planes[0][axis][lane] = in_cells(lo[axis], -margin, axis, grid).next_down();
+            group.planes[1][axis][lane] = in_cells(hi[axis], margin, axis, grid).next_up();
         }
         group.clusters[lane] = Reference::new(item.cluster, last);
     }

@@ -60,7 +60,7 @@ pub struct HybridParams {
 impl HybridParams {
     /// What is fastest on the geometric mean of many scenes.
     pub const DEFAULT: Self =
-        Self { density: 0.1, levels: 8, group_cost: 0.5, brick_cost: 12.0, voxel_cost: 2.0 };
+        Self { density: 0.1, levels: 8, group_cost: 0.5, brick_cost: 4.0, voxel_cost: 1.0 };
 }
 
 /// A voxel structure with its parameters.

@@ -24,19 +24,6 @@ impl Piece {
             + size_of_val(&*self.bricks)
             + size_of_val(&*self.groups)
     }
-
-    /// The lengths of the arrays.
-    pub(super) fn mark(&self) -> [usize; 4] {
-        [self.words.len(), self.references.len(), self.bricks.len(), self.groups.len()]
-    }
-
-    /// Takes back what was made since `mark`.
-    pub(super) fn roll_back(&mut self, [words, references, bricks, groups]: [usize; 4]) {
-        self.words.truncate(words);
-        self.references.truncate(references);
-        self.bricks.truncate(bricks);
-        self.groups.truncate(groups);
-    }
 }
 
 /// Appends pieces to an arena, whose words begin with those of the top grid.

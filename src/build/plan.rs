@@ -104,7 +104,7 @@ impl Plan {
     /// The most triangles for a fine grid.
     const SMALL: usize = 20_000;
     /// The most triangles around an average one without bricks.
-    const CROWD: f64 = 4096.0;
+    const CROWD: f64 = 512.0;
 
     /// What a scene needs, but for parts that are forced.
     pub fn new(profile: &SceneProfile, forced: Forced) -> Self {

@@ -19,18 +19,14 @@ pub(crate) trait Policy: Sync {
     /// Whether to try and divide a voxel that costs `leaf_cost` as a leaf.
     fn divides(&self, voxel: &VoxelView<'_>, leaf_cost: f32) -> bool;
 
-    /// The cost of a voxel as a leaf. A divided voxel is kept only if it costs less.
+    /// The cost of a voxel as a leaf. A voxel is divided only if that costs less.
     fn leaf_cost(&self, _voxel: &VoxelView<'_>) -> f32 {
         f32::INFINITY
     }
 
-    /// What the best way to divide a voxel may cost, at least.
-    fn least_cost(&self) -> f32 {
-        0.0
-    }
-
-    /// The cost of a divided voxel, from the sum of its voxels' costs and their number.
-    fn node_cost(&self, _children: f32, _count: u32) -> f32 {
+    /// The cost of a divided voxel, from the sum of its voxels' costs, their number, and the chance of a ray through
+    /// it to meet them at all.
+    fn node_cost(&self, _children: f32, _count: u32, _chance: f32) -> f32 {
         0.0
     }
 }
@@ -151,9 +147,10 @@ impl Policy for Hybrid {
         Form::Bricks
     }
 
-    /// A leaf of one group is as cheap as a leaf gets, and a brick costs more than to enter it.
+    /// A leaf of one group is as cheap as a leaf gets, and what costs little more than a brick does not repay the
+    /// trial.
     fn divides(&self, voxel: &VoxelView<'_>, leaf_cost: f32) -> bool {
-        voxel.items.len() > crate::lanes::WIDTH && leaf_cost > self.params.brick_cost
+        voxel.items.len() > crate::lanes::WIDTH && leaf_cost > 4.0 * self.params.brick_cost
     }
 
     /// A ray through a voxel meets a cluster's box with a chance that is the ratio of the areas.
@@ -165,12 +162,8 @@ impl Policy for Hybrid {
         groups * self.params.group_cost + clusters
     }
 
-    fn least_cost(&self) -> f32 {
-        self.params.brick_cost
-    }
-
-    /// A ray through a voxel meets one of its 4 x 4 x 4 parts with a chance of 1/16.
-    fn node_cost(&self, children: f32, count: u32) -> f32 {
-        self.params.brick_cost + (children + self.params.voxel_cost * count as f32) / 16.0
+    /// A ray through a brick meets one of its 4 x 4 x 4 parts with a chance of 1/16.
+    fn node_cost(&self, children: f32, count: u32, chance: f32) -> f32 {
+        self.params.brick_cost + chance / 16.0 * (children + self.params.voxel_cost * count as f32)
     }
 }

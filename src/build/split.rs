@@ -16,7 +16,7 @@ use super::divide::{Divider, Space};
 use super::options::BuildError;
 use super::piece::{self, Piece};
 use super::policy::Policy;
-use super::voxel::{Item, range, scatter};
+use super::voxel::{Item, Voxels, scatter};
 use crate::arena::{Arena, Grid, VoxelWord};
 use crate::cluster::Cluster;
 use crate::lanes::Lanes;
@@ -108,9 +108,9 @@ fn place_grid(mut grid: Grid, items: &[Item], limits: &Limits) -> Grid {
 /// About how many references the voxels of a grid would have, seldom less: all voxels in the box of a
 /// cluster, or as many as three planes may meet of them.
 fn estimate(items: &[Item], grid: &Grid, limits: &Limits) -> f64 {
-    let margin = limits.margin_in(grid);
+    let (margin, cells) = (limits.margin_in(grid), Voxels::from(grid));
     let voxels = |item: &Item| {
-        let [x, y, z] = range(&item.bounds, grid, margin).map(|range| range.len() as f64);
+        let [x, y, z] = cells.range(&item.bounds, margin).map(|range| range.len() as f64);
         (x * y * z).min(3.0 * (x * y + y * z + z * x))
     };
     let portions: Vec<&[Item]> = items.chunks(PORTION).collect();
@@ -148,13 +148,13 @@ fn list<L: Lanes + Sync, P: Policy>(
     space: &Space<'_, L, P>,
     items: &[Item],
 ) -> Result<Vec<(u32, Item)>, BuildError> {
-    let margin = space.limits.margin_in(space.grid);
+    let (margin, cells) = (space.limits.margin_in(space.grid), Voxels::from(space.grid));
     let mut list = Vec::with_capacity(items.len());
     space.lanes.vectorize(
         #[inline(always)]
         || {
             for item in items {
-                scatter(space.lanes, space.clusters, item, space.grid, margin, |voxel, item| {
+                scatter(space.lanes, space.clusters, item, &cells, margin, |voxel, item| {
                     list.push((voxel, item));
                 });
                 let work = list.len() * (size_of::<(u32, Item)>() + size_of::<Listed>());
@@ -217,12 +217,11 @@ fn piece<L: Lanes + Sync, P: Policy>(
     // Each piece may have as many references for an item as the others.
     let share = own as f64 / order.len().max(1) as f64;
     let mut divider = Divider::new(space, (share * space.limits.references as f64) as usize);
-    let [nx, ny, _] = space.grid.dims;
+    let cells = Voxels::from(space.grid);
     for i in voxels {
-        let (x, yz) = (i as u32 % nx, i as u32 / nx);
         let items =
             order[starts[i]..starts[i + 1]].iter().map(|&[list, i]| lists[list as usize][i as usize].1);
-        divider.top_voxel([x, yz % ny, yz / ny], items)?;
+        divider.top_voxel(cells.nth(i), items)?;
     }
     Ok(divider.piece())
 }

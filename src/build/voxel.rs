@@ -66,69 +66,114 @@ impl VoxelView<'_> {
 
 /// A voxel's place.
 #[derive(Clone, Copy)]
-pub(super) struct Cube {
+pub(super) struct Cuboid {
     pub(super) lo: [f64; 3],
-    pub(super) side: f64,
+    pub(super) side: [f64; 3],
 }
 
-impl Cube {
-    /// One voxel of a grid.
-    pub(super) fn of(grid: &Grid, index: [u32; 3]) -> Self {
-        Self { lo: grid.corner(index), side: grid.cell }
+impl Cuboid {
+    /// Its longest side.
+    pub(super) fn longest(&self) -> f64 {
+        self.side.into_iter().fold(0.0, f64::max)
     }
 
-    /// The cube enlarged by `margin`, rounded outwards.
+    /// The cuboid enlarged by `margin`, rounded outwards.
     pub(super) fn enlarged(&self, margin: f64) -> Aabb {
         let down = |x: f64| (x as f32).next_down();
         let up = |x: f64| (x as f32).next_up();
         Aabb {
             lo: Vec3::from_array(self.lo.map(|x| down(x - margin))),
-            hi: Vec3::from_array(self.lo.map(|x| up(x + self.side + margin))),
+            hi: Vec3::from_array(std::array::from_fn(|i| up(self.lo[i] + self.side[i] + margin))),
         }
     }
 }
 
-/// The voxels of `grid`, enlarged by `margin`, that a box overlaps.
-#[inline(always)]
-pub(super) fn range(bounds: &Aabb, grid: &Grid, margin: f64) -> [Range<u32>; 3] {
-    std::array::from_fn(|axis| {
-        // As much as rounding to f32 moves the sides of `Cube::enlarged`, for the error of the grid's corner.
-        let reach = |x: f32| margin + f64::from(x.abs()) / (1u32 << 25) as f64;
-        let index = |x: f64| (x * grid.axes.per_length) as u32;
-        let last = grid.dims[axis] - 1;
-        let (lo, hi) = (bounds.lo[axis], bounds.hi[axis]);
-        let lo = index(f64::from(lo) - grid.lo[axis] - reach(lo)).min(last);
-        let hi = index(f64::from(hi) - grid.lo[axis] + reach(hi)).min(last);
-        lo..hi + 1
-    })
+/// The voxels that a box is divided into: those of the top grid, or the parts of a voxel.
+pub(super) struct Voxels {
+    lo: [f64; 3],
+    /// The sides of each.
+    side: [f64; 3],
+    per_length: [f64; 3],
+    dims: [u32; 3],
 }
 
-/// Hands on the voxels of `grid`, enlarged by `margin`, that an item overlaps, with what of it is in each.
+impl From<&Grid> for Voxels {
+    fn from(grid: &Grid) -> Self {
+        Self::new(grid.lo, [grid.cell; 3], grid.dims)
+    }
+}
+
+impl Voxels {
+    pub(super) fn new(lo: [f64; 3], side: [f64; 3], dims: [u32; 3]) -> Self {
+        Self { lo, side, per_length: side.map(|side| 1.0 / side), dims }
+    }
+
+    /// Their number.
+    pub(super) fn len(&self) -> usize {
+        self.dims.iter().map(|&n| n as usize).product()
+    }
+
+    /// One of them.
+    #[inline(always)]
+    pub(super) fn at(&self, index: [u32; 3]) -> Cuboid {
+        let lo = std::array::from_fn(|axis| self.lo[axis] + f64::from(index[axis]) * self.side[axis]);
+        Cuboid { lo, side: self.side }
+    }
+
+    /// The one with this place in the order, x fastest.
+    pub(super) fn nth(&self, i: usize) -> Cuboid {
+        let [x, y, _] = self.dims;
+        let i = i as u32;
+        self.at([i % x, i / x % y, i / x / y])
+    }
+
+    /// All of them together.
+    pub(super) fn whole(&self) -> Cuboid {
+        Cuboid { lo: self.lo, side: std::array::from_fn(|axis| f64::from(self.dims[axis]) * self.side[axis]) }
+    }
+
+    /// The voxels, enlarged by `margin`, that a box overlaps.
+    #[inline(always)]
+    pub(super) fn range(&self, bounds: &Aabb, margin: f64) -> [Range<u32>; 3] {
+        std::array::from_fn(|axis| {
+            // As much as rounding to f32 moves the sides of `Cuboid::enlarged`, for the error of the corner.
+            let reach = |x: f32| margin + f64::from(x.abs()) / (1u32 << 25) as f64;
+            let index = |x: f64| (x * self.per_length[axis]) as u32;
+            let last = self.dims[axis] - 1;
+            let (lo, hi) = (bounds.lo[axis], bounds.hi[axis]);
+            let lo = index(f64::from(lo) - self.lo[axis] - reach(lo)).min(last);
+            let hi = index(f64::from(hi) - self.lo[axis] + reach(hi)).min(last);
+            lo..hi + 1
+        })
+    }
+}
+
+/// Hands on the voxels, enlarged by `margin`, that an item overlaps, with what of it is in each.
 ///
-/// That the item's box is clipped to a voxel which the grid divides takes none away: the enlarged voxel
-/// reaches beyond the grid.
+/// That the item's box is clipped to the voxel which these divide takes none away: the enlarged voxel
+/// reaches beyond them, or they beyond all that is in it.
 #[inline(always)]
 pub(super) fn scatter<L: Lanes>(
     lanes: L,
     clusters: &[Cluster],
     item: &Item,
-    grid: &Grid,
+    voxels: &Voxels,
     margin: f64,
     mut each: impl FnMut(u32, Item),
 ) {
-    let range = range(&item.bounds, grid, margin);
+    let range = voxels.range(&item.bounds, margin);
     let alone = range.iter().all(|r| r.len() == 1);
     let corners = clusters[item.cluster as usize].lanes(lanes);
-    let strides = grid.strides();
+    let [nx, ny, _] = voxels.dims;
     for z in range[2].clone() {
         for y in range[1].clone() {
             for x in range[0].clone() {
-                let cube = Cube::of(grid, [x, y, z]).enlarged(margin);
+                let cube = voxels.at([x, y, z]).enlarged(margin);
                 let inside = if alone { 0xff } else { overlapping(lanes, corners, &cube) as u8 };
                 let mask = item.mask & inside;
                 if mask != 0 {
                     let all = if mask == item.mask { item.bounds } else { bounds(lanes, &corners, mask) };
-                    let voxel = x * strides[0] + y * strides[1] + z * strides[2];
+                    let voxel = x + nx * (y + ny * z);
                     each(voxel, Item { bounds: all.intersection(cube), mask, ..*item });
                 }
             }
@@ -148,8 +193,8 @@ mod tests {
         let plane = Vec3::splat(far as f32 + 1.0);
         let touching = Aabb { lo: plane, hi: plane };
         for off in [off, -off] {
-            let grid = Grid::new([far + off; 3], 1.0, [4; 3]);
-            assert_eq!(range(&touching, &grid, 4.0 * LIST_MARGIN), [0..2, 0..2, 0..2]);
+            let voxels = Voxels::new([far + off; 3], [1.0; 3], [4; 3]);
+            assert_eq!(voxels.range(&touching, 4.0 * LIST_MARGIN), [0..2, 0..2, 0..2]);
         }
     }
 }

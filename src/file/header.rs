@@ -2,8 +2,9 @@
 
 use bytemuck::{Pod, Zeroable, bytes_of};
 
-use crate::arena::{Arena, Form, Grid};
+use crate::arena::{Arena, BoxGroup, Brick, Form, Grid, Reference, VoxelWord};
 use crate::build::{HybridParams, OctreeParams, RecursiveParams, Structure, UniformParams};
+use crate::cluster::Cluster;
 use crate::mesh::TriMesh;
 use crate::validate::Violation;
 
@@ -49,9 +50,15 @@ impl Header {
     /// A byte that no text has, the name, and a line end that a transfer as text would change.
     pub(crate) const MAGIC: [u8; 8] = *b"\x89ogrid\r\n";
     /// The version of the format. Any change of a type in the arena needs another one.
-    pub(crate) const VERSION: u32 = 1;
+    pub(crate) const VERSION: u32 = 2;
     /// The bytes of an item of each section.
-    pub(crate) const ITEM_BYTES: [usize; 5] = [320, 4, 4, 16, 224];
+    pub(crate) const ITEM_BYTES: [usize; 5] = [
+        size_of::<Cluster>(),
+        size_of::<VoxelWord>(),
+        size_of::<Reference>(),
+        size_of::<Brick>(),
+        size_of::<BoxGroup>(),
+    ];
 
     pub(super) fn new(structure: &Structure, triangles: usize, arena: &Arena, sections: [&[u8]; 5]) -> Self {
         debug_assert_eq!(form(structure), arena.form);

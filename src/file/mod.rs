@@ -42,7 +42,7 @@ impl Scene {
     /// | bytes | type | what |
     /// |---|---|---|
     /// | 0..8 | `u8` | `89 6f 67 72 69 64 0d 0a`, which is `\x89ogrid\r\n` |
-    /// | 8..12 | `u32` | the version of the format, 1 |
+    /// | 8..12 | `u32` | the version of the format, 2 |
     /// | 12..16 | `u32` | the structure: 1 uniform, 2 recursive, 3 octree, 4 hybrid, 5 brute force |
     /// | 16..48 | `u32` or `f32` | its parameters in the order of their declaration, then zeros |
     /// | 48..56 | `u64` | the number of triangles of the mesh |
@@ -53,7 +53,7 @@ impl Scene {
     /// | | `f32`, `u32` | clusters, 320 bytes: coordinates by corner, axis and lane, ids by lane |
     /// | | `u32` | voxels, 4 bytes: 0 empty, bit 31 a leaf and its first reference or box, else 1 + a divided voxel |
     /// | | `u32` | references, 4 bytes: bit 31 the last of its leaf, and a cluster |
-    /// | | `u64`, `u32` | bricks, 16 bytes: the occupied ones of 64 voxels, the first of them, zero |
+    /// | | `f32`, `u64`, `u32` | bricks, 48 bytes: lower corner (x, y, z, z), sides of a voxel (x, y, z, z), the occupied ones of 64, the first of them, zero |
     /// | | `f32`, `u32` | boxes, 224 bytes: lower and upper corners by axis and lane, references by lane |
     ///
     /// ```

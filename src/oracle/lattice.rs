@@ -4,6 +4,7 @@ use glam::Vec3;
 use num_bigint::{BigInt, Sign};
 
 use super::exact::{Vector, cross, decompose, dot, sub};
+use super::subject::Place;
 use crate::arena::Grid;
 use crate::ray::Ray;
 
@@ -38,16 +39,20 @@ impl Lattice {
     }
 
     /// A multiple of a cell, from the corner.
-    pub(super) fn cells(&self, x: f32) -> BigInt {
-        let (mantissa, exponent) = decompose(x.into());
+    pub(super) fn cells(&self, x: f64) -> BigInt {
+        let (mantissa, exponent) = decompose(x);
         let whole = &self.part * mantissa * self.parts;
         // Planes are compared with what is some 2^-40 cells away.
         if exponent >= 0 { whole << exponent } else { whole >> -exponent }
     }
 
-    /// The box of a voxel, in parts, enlarged by a margin.
-    pub(super) fn voxel(&self, lo: [u64; 3], side: u64, margin: &BigInt) -> [Vector; 2] {
-        [lo.map(|i| &self.part * i - margin), lo.map(|i| &self.part * (i + side) + margin)]
+    /// A place enlarged by a margin.
+    pub(super) fn place(&self, place: &Place, margin: &BigInt) -> [Vector; 2] {
+        let [lo, hi] = match *place {
+            Place::Cube(lo, side) => [lo, lo.map(|i| i + side)].map(|at| at.map(|i| &self.part * i)),
+            Place::Box(corners) => corners.map(|at| at.map(|x| self.cells(x))),
+        };
+        [lo.map(|x| x - margin), hi.map(|x| x + margin)]
     }
 
     pub(super) fn line(&self, ray: &Ray) -> Line {

@@ -23,10 +23,38 @@ pub(super) enum Slot {
     Brick(usize),
 }
 
-/// An undivided voxel, in parts of the top grid's cells.
+/// A box in the grid.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Place {
+    /// A cube with this lower corner and side, in parts of the top grid's cells.
+    Cube([u64; 3], u64),
+    /// Lower and upper corner, in cells.
+    Box([[f64; 3]; 2]),
+}
+
+impl Place {
+    /// Lower and upper corner, in cells of so many parts.
+    pub(super) fn corners(&self, parts: u64) -> [[f64; 3]; 2] {
+        match *self {
+            Self::Cube(lo, side) => [lo, lo.map(|i| i + side)].map(|at| at.map(|i| i as f64 / parts as f64)),
+            Self::Box(corners) => corners,
+        }
+    }
+
+    /// The part of a box that lies in this place, of cells of so many parts.
+    fn clip(&self, [lo, hi]: [[f64; 3]; 2], parts: u64) -> Option<Self> {
+        let [own_lo, own_hi] = self.corners(parts);
+        let lo: [f64; 3] = std::array::from_fn(|axis| lo[axis].max(own_lo[axis]));
+        let hi: [f64; 3] = std::array::from_fn(|axis| hi[axis].min(own_hi[axis]));
+        (0..3).all(|axis| lo[axis] <= hi[axis]).then_some(Self::Box([lo, hi]))
+    }
+}
+
+/// An undivided voxel, or what of a voxel is around its brick.
 pub(super) struct Leaf {
-    pub(super) lo: [u64; 3],
-    pub(super) side: u64,
+    pub(super) place: Place,
+    /// The brick.
+    pub(super) hole: Option<Place>,
     pub(super) slot: Slot,
     pub(super) clusters: Vec<u32>,
     /// The boxes of the clusters, in cells; none in lists.
@@ -47,7 +75,10 @@ impl Subject {
     pub(super) fn new(mesh: &TriMesh<'_>, structure: Structure) -> Self {
         let (_, arena) = build::build(mesh, &structure.into()).unwrap();
         let depth = validate(&arena, mesh.len()).unwrap().depth as u32;
-        let parts = u64::from(arena.form.divisions()).pow(depth);
+        let parts = match arena.form {
+            Form::Lists { divisions } => u64::from(divisions).pow(depth),
+            Form::Bricks => 1,
+        };
         let margin = if arena.form == Form::Bricks { BRICK_MARGIN } else { LIST_MARGIN };
         let margin = margin * arena.grid.cell * f64::from(arena.grid.longest());
         let bounds = arena.bounds();
@@ -55,39 +86,61 @@ impl Subject {
         let dims = subject.arena.grid.dims.map(|n| n as usize);
         for i in 0..subject.arena.grid.len() {
             let at = [i % dims[0], i / dims[0] % dims[1], i / dims[0] / dims[1]];
-            subject.voxel(Slot::Word(i), at.map(|x| x as u64 * parts), parts);
+            subject.voxel(Slot::Word(i), Place::Cube(at.map(|x| x as u64 * parts), parts));
         }
         subject
     }
 
-    fn voxel(&mut self, slot: Slot, lo: [u64; 3], side: u64) {
+    fn voxel(&mut self, slot: Slot, place: Place) {
         let word = match slot {
             Slot::Word(word) => self.arena.words[word],
             Slot::Brick(_) => VoxelWord::EMPTY,
         };
-        let mut leaf = Leaf { lo, side, slot, clusters: Vec::new(), boxes: Vec::new() };
-        match word.get() {
-            Voxel::Node(first) => return self.parts(first as usize, lo, side),
-            Voxel::Leaf(first) => self.list(first as usize, &mut leaf),
-            Voxel::Empty => {}
+        let mut leaf = Leaf { place, hole: None, slot, clusters: Vec::new(), boxes: Vec::new() };
+        match (word.get(), place) {
+            (Voxel::Node(first), Place::Cube(lo, side)) if self.arena.form != Form::Bricks => {
+                return self.parts(first as usize, lo, side);
+            }
+            (Voxel::Node(first), _) => return self.brick(first as usize, leaf),
+            (Voxel::Leaf(first), _) => self.list(first as usize, &mut leaf),
+            (Voxel::Empty, _) => {}
         }
         self.leaves.push(leaf);
     }
 
     fn parts(&mut self, first: usize, lo: [u64; 3], side: u64) {
         let n = self.arena.form.divisions() as usize;
-        let mut next = 0;
         for i in 0..n * n * n {
-            let slot = match self.arena.form {
-                Form::Lists { .. } => Slot::Word(first + i),
-                Form::Bricks if self.arena.bricks[first].occupied >> i & 1 == 0 => Slot::Brick(first),
-                Form::Bricks => {
-                    next += 1;
-                    Slot::Word(self.arena.bricks[first].first as usize + next - 1)
-                }
-            };
             let (at, side) = ([i % n, i / n % n, i / n / n], side / n as u64);
-            self.voxel(slot, std::array::from_fn(|axis| lo[axis] + at[axis] as u64 * side), side);
+            let lo = std::array::from_fn(|axis| lo[axis] + at[axis] as u64 * side);
+            self.voxel(Slot::Word(first + i), Place::Cube(lo, side));
+        }
+    }
+
+    /// The voxels of a brick, and what is around them, in the voxel that it divides.
+    fn brick(&mut self, index: usize, around: Leaf) {
+        let brick = self.arena.bricks[index];
+        let plane =
+            |axis: usize, i: usize| f64::from(brick.lo[axis]) + i as f64 * f64::from(brick.side[axis]);
+        let corners = |from: [usize; 3], n: usize| {
+            [0, n].map(|n| std::array::from_fn(|axis| plane(axis, from[axis] + n)))
+        };
+        let place = around.place;
+        self.leaves.push(Leaf {
+            hole: Some(Place::Box(corners([0; 3], 4))),
+            slot: Slot::Brick(index),
+            ..around
+        });
+        let mut next = brick.first as usize;
+        for i in 0..64 {
+            let mut slot = Slot::Brick(index);
+            if brick.occupied >> i & 1 != 0 {
+                slot = Slot::Word(next);
+                next += 1;
+            }
+            if let Some(place) = place.clip(corners([i % 4, i / 4 % 4, i / 16], 1), self.parts) {
+                self.voxel(slot, place);
+            }
         }
     }
 
@@ -118,11 +171,12 @@ impl Subject {
     /// False only where a leaf is certainly far from a box.
     pub(super) fn are_near(&self, leaf: &Leaf, bounds: &Aabb) -> bool {
         let grid = &self.arena.grid;
+        let corners = leaf.place.corners(self.parts);
         (0..3).all(|axis| {
-            let plane = |i: u64| grid.lo[axis] + i as f64 / self.parts as f64 * grid.cell;
+            let plane = |i: usize| grid.lo[axis] + corners[i][axis] * grid.cell;
             let [lo, hi] = [bounds.lo[axis], bounds.hi[axis]].map(f64::from);
             let slack = 2.0 * self.margin + 1e-9 * (lo.abs() + hi.abs());
-            plane(leaf.lo[axis]) - slack <= hi && lo <= plane(leaf.lo[axis] + leaf.side) + slack
+            plane(0) - slack <= hi && lo <= plane(1) + slack
         })
     }
 }

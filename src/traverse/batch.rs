@@ -115,7 +115,7 @@ impl Batch<'_> {
             || {
                 let mut query = Q::up_to(ray.t_max);
                 let mut leaves = LeafTest::<_, Exact, Q>::new(lanes, self.arena, ray, &mut query);
-                let start = Start::of_quad(lanes, quad, i);
+                let start = Start::of_quad(quad, i);
                 if Hybrid::<BRICKS>::walk_from(lanes, self.arena, start, &mut leaves).is_continue() {
                     leaves.finish();
                 }

@@ -6,41 +6,54 @@
 
 use glam::Vec4;
 
+use crate::arena::Brick;
 use crate::lanes::{Lanes, WIDTH};
 
-/// When a path enters a brick's lower planes, and how long it takes to cross one voxel, by axis; the fourth lane
-/// repeats the third.
+/// The times at which a path passes planes, by axis; the fourth lane repeats the third.
 ///
-/// As vectors, in which they are put on the stack of bricks and taken from it: a vector is not loaded before single
+/// As vectors, as is all that is put on the stack of bricks and taken from it: a vector is not loaded before single
 /// values stored to it have left the processor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Line {
+    /// Time a cell, with the sign of the direction.
+    slope: Vec4,
+    /// Minus the time at which the path passes the grid's lower corner.
+    delay: Vec4,
+    /// The sides of a brick's voxel from its lower to its mirrored corner: 0, or 4 where the direction is negative.
+    mirrored: Vec4,
+}
+
+impl Line {
+    #[inline(always)]
+    pub(crate) fn new([x, y, z]: [f32; 3], [u, v, w]: [f32; 3], octant: u32) -> Self {
+        let side = |axis: u32| (octant >> axis << 2 & 4) as f32;
+        Self {
+            slope: Vec4::new(x, y, z, z),
+            delay: Vec4::new(u, v, w, w),
+            mirrored: Vec4::new(side(0), side(1), side(2), side(2)),
+        }
+    }
+}
+
+/// When a path enters a brick's lower planes (upper where it is mirrored), and how long it takes to cross one voxel,
+/// likewise.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BrickPath {
     enter: Vec4,
     width: Vec4,
-    /// More than the rounding errors of all times in the cell of the top grid, so that every voxel is
-    /// met at the times at which the path is in it. Smaller voxels inherit the errors, hence the slack.
-    slack: Vec4,
 }
 
 impl BrickPath {
-    /// For the brick that fills a cell of the top grid.
     #[inline(always)]
-    pub(crate) fn new([x, y, z]: [f32; 3], [u, v, w]: [f32; 3]) -> Self {
-        let (enter, width) = (Vec4::new(x, y, z, z), Vec4::new(u, v, w, w));
-        Self { enter, width, slack: (enter.abs() + 4.0 * width) * 2f32.powi(-20) }
+    pub(crate) fn new(line: &Line, brick: &Brick) -> Self {
+        let corner = brick.lo + line.mirrored * brick.side;
+        Self { enter: corner * line.slope + line.delay, width: brick.side * line.slope.abs() }
     }
 
-    /// The same for the brick that fills the voxel with this index (x + 4 y + 16 z, mirrored).
+    /// When the path enters the voxel with this index (x + 4 y + 16 z, mirrored), at the earliest.
     #[inline(always)]
-    pub(crate) fn child(&self, index: u32) -> Self {
-        let enter = self.enter + PLACES[index as usize % PLACES.len()] * self.width;
-        Self { enter, width: 0.25 * self.width, slack: self.slack }
-    }
-
-    /// When the path enters the brick at the earliest, given the slack.
-    #[inline(always)]
-    pub(crate) fn earliest(&self) -> f32 {
-        (self.enter - self.slack).max_element()
+    pub(crate) fn start(&self, index: u32) -> f32 {
+        (PLACES[index as usize % PLACES.len()] * self.width + self.enter).max_element()
     }
 
     /// The voxels that the path meets from time 0 to `limit`.
@@ -59,12 +72,13 @@ impl BrickPath {
     }
 
     /// When the path is between the planes of the voxels with these indices along an axis.
+    ///
+    /// Each ends when the next one begins, to the bit, and no sum is fused, as in [`BrickPath::start`].
     #[inline(always)]
     fn interval<L: Lanes>(&self, lanes: L, axis: usize, index: &[f32; WIDTH], limit: f32) -> Interval<L> {
-        let (first, last) = (self.enter - self.slack, self.enter + self.width + self.slack);
-        let (index, width) = (lanes.load(index), lanes.splat(self.width[axis]));
-        let start = lanes.mul_add(index, width, lanes.splat(first[axis]));
-        let end = lanes.mul_add(index, width, lanes.splat(last[axis]));
+        let (enter, width) = (lanes.splat(self.enter[axis]), lanes.splat(self.width[axis]));
+        let index = lanes.load(index);
+        let (start, end) = (index * width + enter, (index + lanes.splat(1.0)) * width + enter);
         (lanes.max(start, lanes.splat(0.0)), lanes.min(end, lanes.splat(limit)))
     }
 }
@@ -138,38 +152,69 @@ mod tests {
     use super::*;
     use crate::lanes::Portable;
 
-    /// Voxel by voxel, in f64, without slack.
+    fn path([x, y, z]: [f32; 3], [u, v, w]: [f32; 3]) -> BrickPath {
+        BrickPath { enter: Vec4::new(x, y, z, z), width: Vec4::new(u, v, w, w) }
+    }
+
+    /// Voxel by voxel.
     fn slow_mask(path: &BrickPath, limit: f32) -> u64 {
         let met = |index: u32| {
-            let (mut start, mut end) = (0f64, f64::from(limit));
+            let (mut start, mut end) = (0f32, limit);
             for axis in 0..3 {
-                let at = f64::from(index >> (2 * axis) & 3);
-                let (enter, width) = (f64::from(path.enter[axis]), f64::from(path.width[axis]));
-                start = start.max(enter + at * width);
-                end = end.min(enter + (at + 1.0) * width);
+                let at = (index >> (2 * axis) & 3) as f32;
+                start = start.max(at * path.width[axis] + path.enter[axis]);
+                end = end.min((at + 1.0) * path.width[axis] + path.enter[axis]);
             }
             start <= end
         };
         (0..64).map(|i| u64::from(met(i)) << i).sum()
     }
 
+    fn random(i: u32) -> (BrickPath, f32) {
+        let value = |k: u32| (i.wrapping_mul(2_654_435_761).rotate_left(k * 5) >> 20) as f32 / 4096.0;
+        let enter = [0, 1, 2].map(|k| 3.0 * value(k) - 2.0);
+        let path = path(enter, [3, 4, 5].map(|k| 1.0 / (value(k) + 1e-3)));
+        (path, if i.is_multiple_of(2) { f32::INFINITY } else { 2.0 * value(6) })
+    }
+
     #[test]
     fn masks_are_those_of_single_voxels() {
-        for i in 0..2000u32 {
-            let value = |k: u32| (i.wrapping_mul(2_654_435_761).rotate_left(k * 5) >> 20) as f32 / 4096.0;
-            let enter = [0, 1, 2].map(|k| 3.0 * value(k) - 2.0);
-            let path = BrickPath::new(enter, [3, 4, 5].map(|k| 1.0 / (value(k) + 1e-3)));
-            let limit = if i % 2 == 0 { f32::INFINITY } else { 2.0 * value(6) };
-            assert_eq!(path.mask(Portable, limit), slow_mask(&path, limit), "{path:?} {limit}");
+        for (path, limit) in (0..2000).map(random) {
+            let mask = path.mask(Portable, limit);
+            assert_eq!(mask, slow_mask(&path, limit), "{path:?} {limit}");
+            for index in (0..64).filter(|i| mask >> i & 1 != 0) {
+                assert!(path.start(index) <= limit, "{path:?} {limit} {index}");
+            }
         }
     }
 
     #[test]
     fn a_diagonal_meets_the_voxels_around_it() {
-        let path = BrickPath::new([0.0; 3], [1.0; 3]);
-        let mask = path.mask(Portable, f32::INFINITY);
+        let mask = path([0.0; 3], [1.0; 3]).mask(Portable, f32::INFINITY);
         for i in 0..4 {
             assert_ne!(mask & 1 << (21 * i), 0);
+        }
+    }
+
+    /// A path enters a voxel where it passes its lower planes or, in the other direction, its upper ones.
+    #[test]
+    fn voxels_are_entered_at_their_planes() {
+        let lo = [1.0, -2.0, 0.5f32];
+        let side = [0.25, 0.5, 2.0f32];
+        let four = |[x, y, z]: [f32; 3]| Vec4::new(x, y, z, z);
+        let brick = Brick { lo: four(lo), side: four(side), occupied: 1, first: 0, padding: 0 };
+        for octant in 0..8 {
+            let falls = |axis: usize| octant >> axis & 1 != 0;
+            let slope: [f32; 3] = std::array::from_fn(|axis| if falls(axis) { -3.0 } else { 2.0 });
+            let path = BrickPath::new(&Line::new(slope, [1.0, 2.0, 4.0], octant), &brick);
+            for index in 0..64 {
+                let times = [0, 1, 2].map(|axis| {
+                    let i = index >> (2 * axis) & 3;
+                    let i = if falls(axis) { 4 - i } else { i };
+                    (lo[axis] + i as f32 * side[axis]) * slope[axis] + [1.0, 2.0, 4.0][axis]
+                });
+                assert_eq!(path.start(index), times.into_iter().fold(f32::MIN, f32::max), "{octant} {index}");
+            }
         }
     }
 
@@ -181,35 +226,18 @@ mod tests {
             }
         }
     }
-    /// Notes the heights (y) of the voxels that a path meets three levels down, where all are occupied.
-    fn heights(path: &BrickPath, levels: u32, below: usize, met: &mut [bool; 64]) {
-        let mut mask = path.mask(Portable, f32::INFINITY);
-        while mask != 0 {
-            let index = mask.trailing_zeros();
-            mask &= mask - 1;
-            let height = 4 * below + (index as usize >> 2 & 3);
-            match levels {
-                1 => met[height] = true,
-                _ => heights(&path.child(index), levels - 1, height, met),
-            }
-        }
-    }
 
-    /// A path that climbs one cell while it crosses the plane between two bricks at a small angle.
+    /// A path that climbs through a brick while it crosses a plane at a small angle.
     #[test]
-    fn no_height_is_left_out_between_bricks() {
+    fn no_height_is_left_out_at_a_plane() {
         let mut rng = crate::rng::Rng::new(1);
         for i in 0..10_000 {
-            let (crossing, width) = (rng.unit(), rng.range(1.0, 2.0) * 2f64.powi(i % 30));
-            let mut met = [false; 64];
-            for enter in [crossing - width, crossing] {
-                let path = |enter: f64| {
-                    let width = [width as f32, 1.0, 1e30].map(|w| 0.25 * w);
-                    BrickPath::new([enter as f32, 0.0, -1.0], width)
-                };
-                heights(&path(enter), 3, 0, &mut met);
+            let (crossing, width) = (rng.range(0.0, 4.0), rng.range(4.0, 8.0) * 2f64.powi(i % 30));
+            let path = path([(crossing - width) as f32, 0.0, -1.0], [width as f32, 1.0, 1e30]);
+            let mask = path.mask(Portable, f32::INFINITY);
+            for height in 0..4 {
+                assert_ne!(mask & 0xf << (4 * height), 0, "{crossing} {width} {height}");
             }
-            assert_eq!(met, [true; 64], "{crossing} {width}");
         }
     }
 }

@@ -1,23 +1,22 @@
 //! The walk through the hybrid: a DDA over the top grid, masks within bricks, boxes before clusters.
 //!
 //! The paper's future work: a regular grid on top, and below it levels of N = 2, two of which make a
-//! 4 x 4 x 4 brick. Empty voxels of a brick are never stepped through: the mask of those that the path
+//! 4 x 4 x 4 brick, fitted to what it holds. Empty voxels of a brick are never stepped through: the mask of those that the path
 //! meets, ANDed with that of the occupied ones, is popped from its lowest bit, which is the next voxel.
 //!
 //! # Errors
-//! Times within bricks are f32. The slack of [`BrickPath`] makes up for their rounding, so that a voxel is
-//! visited at all times at which the path is in it. The time of a box's side is its place times `slope`
-//! plus `delay`: their roundings, and those of product and sum, misplace it by less than 2^-22 of the grid;
-//! voxels and boxes are built larger by 8 times that, see [`BRICK_MARGIN`](crate::dda::BRICK_MARGIN).
+//! Times of bricks and boxes are f32. That of a box's side is its place times `slope` plus `delay`: their
+//! roundings, and those of product and sum, misplace it by less than 2^-22 of the grid, a plane in a brick by less
+//! than 2^-20.8; voxels and boxes are built larger by 2^-19, see [`BRICK_MARGIN`](crate::dda::BRICK_MARGIN).
 
 use std::ops::ControlFlow;
 
-use super::brick::{BrickPath, mirror, mirror_index};
+use super::brick::{BrickPath, Line, mirror, mirror_index};
 use super::{Visit, Walker};
 use crate::arena::{Arena, BRICK_LEVELS, BoxGroup, Grid, Voxel, VoxelWord};
 use crate::dda::{Clock, Dda, Limit, Path, Quad, Steps};
 use crate::filter::above;
-use crate::lanes::{Lanes, Vec3Lanes, axes};
+use crate::lanes::{Lanes, Vec3Lanes, axes, splat};
 
 /// The walk, with bricks or through the top grid alone.
 pub(crate) struct Hybrid<const BRICKS: bool>;
@@ -30,20 +29,20 @@ impl<const BRICKS: bool> Walker for Hybrid<BRICKS> {
 }
 
 /// Where a walk starts, and what it adds from there.
-pub(super) struct Start<L: Lanes> {
+pub(super) struct Start {
     dda: Dda,
     steps: Steps,
     octant: u32,
     clock: Clock,
     /// Time a cell, with the sign of the direction.
-    slope: Vec3Lanes<L>,
+    slope: [f32; 3],
     /// Minus the time at which the path passes the grid's lower corner.
-    delay: Vec3Lanes<L>,
+    delay: [f32; 3],
 }
 
-impl<L: Lanes> Start<L> {
+impl Start {
     #[inline(always)]
-    fn of(lanes: L, path: &Path<L>, grid: &Grid) -> Self {
+    fn of<L: Lanes>(lanes: L, path: &Path<L>, grid: &Grid) -> Self {
         let (dda, steps) = Dda::new(lanes, path, grid);
         let (octant, clock) = (path.octant, path.clock);
         let (slope, delay) = (rounded(lanes, path.slope(lanes)), rounded(lanes, path.delay(lanes, grid)));
@@ -52,7 +51,7 @@ impl<L: Lanes> Start<L> {
 
     /// That of one of four rays.
     #[inline(always)]
-    pub(super) fn of_quad(lanes: L, quad: &Quad, ray: usize) -> Self {
+    pub(super) fn of_quad(quad: &Quad, ray: usize) -> Self {
         let (dda, steps) = quad.dda(ray);
         Self {
             dda,
@@ -61,23 +60,23 @@ impl<L: Lanes> Start<L> {
             clock: quad.clock(ray),
             slope: axes(
                 #[inline(always)]
-                |axis| lanes.splat(quad.slope(axis, ray)),
+                |axis| quad.slope(axis, ray),
             ),
             delay: axes(
                 #[inline(always)]
-                |axis| lanes.splat(quad.delay(axis, ray)),
+                |axis| quad.delay(axis, ray),
             ),
         }
     }
 }
 
-/// Three of four values, each in all lanes.
+/// Three of four values.
 #[inline(always)]
-fn rounded<L: Lanes>(lanes: L, x: L::F64) -> Vec3Lanes<L> {
+fn rounded<L: Lanes>(lanes: L, x: L::F64) -> [f32; 3] {
     let x = lanes.store4(x);
     axes(
         #[inline(always)]
-        |axis| lanes.splat(x[axis] as f32),
+        |axis| x[axis] as f32,
     )
 }
 
@@ -87,7 +86,7 @@ impl<const BRICKS: bool> Hybrid<BRICKS> {
     pub(super) fn walk_from<L: Lanes, V: Visit>(
         lanes: L,
         arena: &Arena,
-        start: Start<L>,
+        start: Start,
         visit: &mut V,
     ) -> ControlFlow<()> {
         let (mut dda, steps) = (start.dda, start.steps);
@@ -110,13 +109,7 @@ impl<const BRICKS: bool> Hybrid<BRICKS> {
             };
             match word.get() {
                 Voxel::Leaf(first) => cells.groups(first)?,
-                Voxel::Node(brick) if BRICKS => {
-                    let enter = axes(|axis| (dda.exit[axis] - steps.width[axis]) as f32);
-                    cells.descend(
-                        brick,
-                        BrickPath::new(enter, axes(|axis| 0.25 * steps.width[axis] as f32)),
-                    )?;
-                }
+                Voxel::Node(brick) if BRICKS => cells.descend(brick)?,
                 Voxel::Empty | Voxel::Node(_) => {}
             }
             if !dda.advance(cells.limit.time, &steps) {
@@ -147,10 +140,11 @@ struct Cells<'a, L: Lanes, V> {
     last: f32,
     /// When the path leaves the grid, rounded up.
     end: f32,
-    /// Time a cell, with the sign of the direction.
+    /// As in [`Start`].
     slope: Vec3Lanes<L>,
-    /// Minus the time at which the path passes the grid's lower corner.
     delay: Vec3Lanes<L>,
+    /// The same for bricks.
+    line: Line,
     /// The sides of boxes that the path enters and leaves by.
     near: [usize; 3],
     far: [usize; 3],
@@ -158,7 +152,7 @@ struct Cells<'a, L: Lanes, V> {
 
 impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
     #[inline(always)]
-    fn new(lanes: L, arena: &'a Arena, start: &Start<L>, visit: &'a mut V) -> Self {
+    fn new(lanes: L, arena: &'a Arena, start: &Start, visit: &'a mut V) -> Self {
         let &Start { octant, clock, slope, delay, .. } = start;
         let limit = Limit::new(clock, start.steps.end, visit.t_max());
         let (last, end) = (above(limit.time), above(start.steps.end));
@@ -170,7 +164,9 @@ impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
             #[inline(always)]
             |axis| (!octant >> axis & 1) as usize,
         );
-        Self { lanes, arena, octant, clock, visit, limit, last, end, slope, delay, near, far }
+        let line = Line::new(slope, delay, octant);
+        let (slope, delay) = (splat(lanes, slope.into()), splat(lanes, delay.into()));
+        Self { lanes, arena, octant, clock, visit, limit, last, end, slope, delay, line, near, far }
     }
 
     /// Follows the query's `t_max`, and says whether it has changed.
@@ -187,9 +183,9 @@ impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
 
     /// Visits the occupied voxels of a brick that the path meets, front to back, and what is below.
     #[inline(always)]
-    fn descend(&mut self, brick: u32, times: BrickPath) -> ControlFlow<()> {
+    fn descend(&mut self, brick: u32) -> ControlFlow<()> {
         let flip = mirror_index(self.octant);
-        let mut frame = self.frame(brick, times);
+        let mut frame = self.frame(brick);
         let mut stack = [frame; BRICK_LEVELS as usize];
         let mut depth = 0;
         loop {
@@ -202,8 +198,7 @@ impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
             }
             let index = frame.mask.trailing_zeros();
             frame.mask &= frame.mask - 1;
-            let times = frame.times.child(index);
-            if times.earliest() > self.last {
+            if frame.times.start(index) > self.last {
                 continue;
             }
             let brick = &self.arena.bricks[frame.brick as usize];
@@ -217,16 +212,17 @@ impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
                 Voxel::Node(brick) => {
                     stack[depth] = frame;
                     depth += 1;
-                    frame = self.frame(brick, times);
+                    frame = self.frame(brick);
                 }
             }
         }
     }
 
     #[inline(always)]
-    fn frame(&mut self, index: u32, times: BrickPath) -> Frame {
+    fn frame(&mut self, index: u32) -> Frame {
         let brick = &self.arena.bricks[index as usize];
         self.visit.read(brick);
+        let times = BrickPath::new(&self.line, brick);
         let occupied = mirror(brick.occupied, self.octant);
         Frame { brick: index, times, mask: occupied & times.mask(self.lanes, self.last) }
     }

@@ -127,13 +127,7 @@ impl<'a, 'b, L: Doubles, Q: Query> Coherent<'a, 'b, L, Q> {
                             match self.arena.words[index as usize].get() {
                                 Voxel::Empty => {}
                                 Voxel::Leaf(first) => self.groups(first),
-                                Voxel::Node(brick) => {
-                                    let mut lo = [0.0; 3];
-                                    lo[main] = slice as f32;
-                                    lo[u] = i as f32;
-                                    lo[v] = j as f32;
-                                    self.brick(brick, lo, 0.25);
-                                }
+                                Voxel::Node(brick) => self.brick(brick),
                             }
                         }
                     }
@@ -153,30 +147,31 @@ impl<'a, 'b, L: Doubles, Q: Query> Coherent<'a, 'b, L, Q> {
     }
 
     /// The voxels of a brick, slice after slice.
-    fn brick(&mut self, brick: u32, lo: [f32; 3], side: f32) {
+    fn brick(&mut self, brick: u32) {
         self.lanes.vectorize(
             #[inline(always)]
-            || self.voxels(brick, lo, side),
+            || self.voxels(brick),
         );
     }
 
     #[inline(always)]
-    fn voxels(&mut self, brick: u32, lo: [f32; 3], side: f32) {
+    fn voxels(&mut self, brick: u32) {
         let brick = self.arena.bricks[brick as usize];
+        let (lo, side) = (brick.lo.to_array(), brick.side.to_array());
         let (main, [u, v]) = (self.group.main, self.group.others);
         for k in 0..4 {
             if self.changed && !self.narrow() {
                 return;
             }
             let slice = if self.group.rises { k } else { 3 - k };
-            let a = lo[main] + slice as f32 * side;
-            let (from, to) = (greater(a, self.frustum.span[0]), lesser(a + side, self.frustum.span[1]));
+            let ends = [slice, slice + 1].map(|i| lo[main] + i as f32 * side[main]);
+            let (from, to) = (greater(ends[0], self.frustum.span[0]), lesser(ends[1], self.frustum.span[1]));
             if from > to {
                 continue;
             }
             let range = |s: usize, axis: usize| {
                 let [low, high] = self.frustum.range(s, from, to);
-                let (low, high) = ((low - lo[axis]) / side, (high - lo[axis]) / side);
+                let (low, high) = ((low - lo[axis]) / side[axis], (high - lo[axis]) / side[axis]);
                 if low < 4.0 && high >= 0.0 {
                     let (low, high) = (greater(low, 0.0) as u32, lesser(high, 3.0) as u32);
                     (2u32 << high) - (1 << low)
@@ -197,10 +192,7 @@ impl<'a, 'b, L: Doubles, Q: Query> Coherent<'a, 'b, L, Q> {
                 match self.arena.words[word as usize].get() {
                     Voxel::Empty => {}
                     Voxel::Leaf(first) => self.groups(first),
-                    Voxel::Node(below) => {
-                        let at = |axis: usize| lo[axis] + (bit >> (2 * axis) & 3) as f32 * side;
-                        self.brick(below, [at(0), at(1), at(2)], 0.25 * side);
-                    }
+                    Voxel::Node(below) => self.brick(below),
                 }
             }
         }

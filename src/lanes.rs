@@ -137,8 +137,10 @@ pub(crate) struct Dispatched<S>(pub(crate) S);
 
 /// The same, not to be copied: a closure takes it by value, which is nothing, where it would keep a pointer to what
 /// can be copied. With two pointers to keep at most it is handed over in registers.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub(crate) struct Token<S>(pub(crate) S);
 
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 impl<S> Token<S> {
     #[inline(always)]
     pub(crate) fn lanes(self) -> Dispatched<S> {
@@ -272,7 +274,7 @@ macro_rules! dispatch {
                 $crate::lanes::apart(|| $crate::lanes::dispatch!(@ simd, $lanes => $body))
             }
             #[cfg(not(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2")))]
-            _ => $crate::lanes::dispatch_here!($isa, $lanes => $body),
+            _ => $crate::lanes::apart(|| $crate::lanes::dispatch_here!($isa, $lanes => $body)),
         }
     };
     (@ $simd:ident, $lanes:ident => $body:expr) => {{

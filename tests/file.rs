@@ -85,6 +85,13 @@ fn loaded_scenes_agree_with_the_oracle() {
     }
 }
 
+fn assert_same_hits(scene: &Scene, mesh: &TriMesh<'_>) {
+    let built = Scene::build(mesh, &Default::default()).unwrap();
+    for ray in hazards(mesh, 1, 200) {
+        assert_eq!(scene.closest(&ray), built.closest(&ray), "{ray:?}");
+    }
+}
+
 /// Fails if a type of the arena changes and the version does not.
 #[test]
 fn a_file_of_version_2_is_read() {
@@ -92,10 +99,14 @@ fn a_file_of_version_2_is_read() {
     let cube = builtin::cube();
     let (scene, mesh) = (Scene::load(file).unwrap(), cube.mesh().unwrap());
     assert_eq!(scene.check_mesh(&mesh), Ok(()));
-    let built = Scene::build(&mesh, &Default::default()).unwrap();
-    for ray in hazards(&mesh, 1, 200) {
-        assert_eq!(scene.closest(&ray), built.closest(&ray), "{ray:?}");
-    }
+    assert_same_hits(&scene, &mesh);
+
+    let file: &[u8] = include_bytes!("../fuzz/regressions/ogrid/clumps_bricks");
+    let (vertices, triangles) = crowd(1, 50, 100);
+    let (scene, mesh) = (Scene::load(file).unwrap(), TriMesh::new(&vertices, &triangles).unwrap());
+    assert_eq!(scene.check_mesh(&mesh), Ok(()));
+    assert_eq!(scene.validate().unwrap().depth, 2);
+    assert_same_hits(&scene, &mesh);
 }
 
 #[test]

@@ -183,12 +183,8 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
         let grid = self.space.grid;
         let all = self.items[items].iter().fold(Aabb::EMPTY, |all, item| all.union(ordered(&item.bounds)));
         let least = (self.least_side / grid.cell) as f32;
-        let (mut lo, mut side) = ([0.0; 3], [0.0; 3]);
-        for axis in 0..3 {
-            let hi = in_cells(all.hi[axis], self.margin, axis, grid).next_up();
-            lo[axis] = in_cells(all.lo[axis], -self.margin, axis, grid).next_down();
-            side[axis] = (0.25 * (hi - lo[axis])).next_up().max(least);
-        }
+        let [lo, hi] = in_cells(&all, grid, self.margin);
+        let side = [0, 1, 2].map(|axis| (0.25 * (hi[axis] - lo[axis])).next_up().max(least));
         let place = |axis: usize| grid.lo[axis] + f64::from(lo[axis]) * grid.cell;
         let sides = side.map(|side| f64::from(side) * grid.cell);
         let voxels = Voxels::new(std::array::from_fn(place), sides, [4; 3]);
@@ -359,9 +355,13 @@ fn ordered(b: &Aabb) -> Aabb {
     Aabb { lo: b.lo.min(b.hi), hi: b.lo.max(b.hi) }
 }
 
-/// A coordinate moved by the margin, relative to the grid's lower corner, in cells.
-fn in_cells(x: f32, margin: f64, axis: usize, grid: &Grid) -> f32 {
-    ((f64::from(x) + margin - grid.lo[axis]) / grid.cell) as f32
+/// The corners of a box enlarged by the margin and rounded outwards, relative to the grid's lower one, in cells.
+fn in_cells(b: &Aabb, grid: &Grid, margin: f64) -> [[f32; 3]; 2] {
+    let cells =
+        |x: f32, axis: usize, margin: f64| ((f64::from(x) + margin - grid.lo[axis]) / grid.cell) as f32;
+    let lo = std::array::from_fn(|axis| cells(b.lo[axis], axis, -margin).next_down());
+    let hi = std::array::from_fn(|axis| cells(b.hi[axis], axis, margin).next_up());
+    [lo, hi]
 }
 
 /// The boxes of up to eight items, enlarged by the margin, in cells of the grid.
@@ -369,10 +369,10 @@ fn group(items: &[Item], grid: &Grid, margin: f64, last: bool) -> BoxGroup {
     let mut group =
         BoxGroup { planes: [[[f32::INFINITY; WIDTH]; 3]; 2], clusters: [Reference::new(0, last); WIDTH] };
     for (lane, item) in items.iter().enumerate() {
-        let Aabb { lo, hi } = ordered(&item.bounds);
+        let corners = in_cells(&ordered(&item.bounds), grid, margin);
         for axis in 0..3 {
-            group.planes[0][axis][lane] = in_cells(lo[axis], -margin, axis, grid).next_down();
-            group.planes[1][axis][lane] = in_cells(hi[axis], margin, axis, grid).next_up();
+            group.planes[0][axis][lane] = corners[0][axis];
+            group.planes[1][axis][lane] = corners[1][axis];
         }
         group.clusters[lane] = Reference::new(item.cluster, last);
     }

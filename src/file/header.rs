@@ -45,6 +45,12 @@ pub(crate) struct Header {
 }
 
 const _: () = assert!(size_of::<Header>() == 3 * super::ALIGN);
+const _: () = {
+    let [cluster, word, reference, brick, group] = Header::ITEM_BYTES;
+    assert!(size_of::<Cluster>() == cluster && size_of::<VoxelWord>() == word);
+    assert!(size_of::<Reference>() == reference && size_of::<Brick>() == brick);
+    assert!(size_of::<BoxGroup>() == group);
+};
 
 impl Header {
     /// A byte that no text has, the name, and a line end that a transfer as text would change.
@@ -52,13 +58,7 @@ impl Header {
     /// The version of the format. Any change of a type in the arena needs another one.
     pub(crate) const VERSION: u32 = 2;
     /// The bytes of an item of each section.
-    pub(crate) const ITEM_BYTES: [usize; 5] = [
-        size_of::<Cluster>(),
-        size_of::<VoxelWord>(),
-        size_of::<Reference>(),
-        size_of::<Brick>(),
-        size_of::<BoxGroup>(),
-    ];
+    pub(crate) const ITEM_BYTES: [usize; 5] = [320, 4, 4, 48, 224];
 
     pub(super) fn new(structure: &Structure, triangles: usize, arena: &Arena, sections: [&[u8]; 5]) -> Self {
         debug_assert_eq!(form(structure), arena.form);

@@ -44,18 +44,16 @@ impl Subject {
                 if !self.are_near(leaf, bounds) || !overlap(corners, &voxel) {
                     continue;
                 }
-                let box_of_cluster = || {
+                // What is around a brick has no list, and lists have no boxes.
+                let bounds = if let Some(hole) = leaf.hole {
+                    hole.corners(self.parts)
+                } else {
                     let place = leaf.clusters.iter().position(|c| c == cluster);
                     let place =
                         place.unwrap_or_else(|| panic!("triangle {id} is not listed at {:?}", leaf.place));
-                    leaf.boxes.get(place).map(|bounds| bounds.map(|side| side.map(f64::from)))
+                    let Some(bounds) = leaf.boxes.get(place) else { continue };
+                    bounds.map(|side| side.map(f64::from))
                 };
-                // What is around a brick has no list.
-                let bounds = match leaf.hole {
-                    Some(hole) => Some(hole.corners(self.parts)),
-                    None => box_of_cluster(),
-                };
-                let Some(bounds) = bounds else { continue };
                 for axis in 0..3 {
                     let of = corners.each_ref().map(|corner| &corner[axis]);
                     let lo = of.into_iter().min().unwrap().max(&voxel[0][axis]) - &margin;

@@ -1,8 +1,9 @@
 //! The walk through the hybrid: a DDA over the top grid, masks within bricks, boxes before clusters.
 //!
 //! The paper's future work: a regular grid on top, and below it levels of N = 2, two of which make a
-//! 4 x 4 x 4 brick, fitted to what it holds. Empty voxels of a brick are never stepped through: the mask of those that the path
-//! meets, ANDed with that of the occupied ones, is popped from its lowest bit, which is the next voxel.
+//! 4 x 4 x 4 brick, fitted to what it holds. Empty voxels of a brick are never stepped through: the mask of
+//! those that the path meets, ANDed with that of the occupied ones, is popped from its lowest bit, which is the
+//! next voxel.
 //!
 //! # Errors
 //! Times of bricks and boxes are f32. That of a box's side is its place times `slope` plus `delay`: their

@@ -4,16 +4,16 @@ use crate::support::{Folder, QUADS, npy, rays};
 
 const ONE_RAY: [f32; 8] = [0.25, 0.5, 5.0, 0.0, 0.0, 0.0, -1.0, f32::INFINITY];
 
-/// OBJ files that no scene can be made of.
-const OBJ_FILES: &[(&str, &str)] = &[
-    ("nan.obj", "v 0 0 0\nv NaN 0 0\nv 0 1 0\nf 1 2 3\n"),
-    ("infinite.obj", "v 0 0 0\nv 1 0 0\nv 0 inf 0\nf 1 2 3\n"),
-    ("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"),
-    ("zero.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n"),
-    ("before.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -4 1 2\n"),
-    ("edge.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n"),
-    ("short.obj", "v 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
-    ("words.obj", "v a b c\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+/// OBJ files that no scene can be made of, and the line at fault.
+const OBJ_FILES: &[(&str, &str, u32)] = &[
+    ("nan.obj", "v 0 0 0\nv NaN 0 0\nv 0 1 0\nf 1 2 3\n", 2),
+    ("infinite.obj", "v 0 0 0\nv 1 0 0\nv 0 inf 0\nf 1 2 3\n", 3),
+    ("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", 4),
+    ("zero.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", 4),
+    ("before.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -4 1 2\n", 4),
+    ("edge.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n", 4),
+    ("short.obj", "v 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 1),
+    ("words.obj", "v a b c\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 1),
 ];
 
 /// npy files that are not rays, and a part of what is said of them.
@@ -114,10 +114,11 @@ fn check(folder: &Folder, line: &str, code: i32, said: &str) {
 #[test]
 fn obj_files() {
     let folder = folder();
-    for (name, content) in OBJ_FILES {
+    for (name, content, line) in OBJ_FILES {
         folder.write(name, content);
-        check(&folder, &format!("analyze {name}"), 1, name);
-        check(&folder, &format!("render {name} -o out"), 1, name);
+        let said = format!("octogrid: {name}:{line}: ");
+        check(&folder, &format!("analyze {name}"), 1, &said);
+        check(&folder, &format!("render {name} -o out"), 1, &said);
     }
 }
 

@@ -3,6 +3,7 @@
 use std::fmt::Display;
 use std::path::Path;
 
+use octogrid::obj::ObjError;
 use octogrid::{BuildError, MeshError};
 
 /// Why the command stops.
@@ -32,6 +33,13 @@ impl From<BuildError> for Failure {
 
 impl From<MeshError> for Failure {
     fn from(error: MeshError) -> Self {
+        Self::Expected(error.to_string())
+    }
+}
+
+impl From<ObjError> for Failure {
+    /// The error names the file itself, which may be that of the materials.
+    fn from(error: ObjError) -> Self {
         Self::Expected(error.to_string())
     }
 }

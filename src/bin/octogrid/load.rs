@@ -36,7 +36,7 @@ pub(crate) fn load(name: &str) -> Result<Loaded, Failure> {
         let remedy = "give the scene that it was built from; render takes this file with --accel";
         return Err(Failure::at(path, format_args!("holds a structure, no scene: {remedy}")));
     }
-    let model = octogrid::obj::read_obj(path).map_err(|e| Failure::at(path, e))?;
+    let model = octogrid::obj::read_obj(path)?;
     model.mesh().map_err(|e| Failure::at(path, e))?;
     Ok(Loaded { name: name.to_owned(), model, cameras: &[] })
 }

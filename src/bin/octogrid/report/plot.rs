@@ -12,7 +12,7 @@ use super::numbers::short;
 const SIZE: (u32, u32) = (960, 560);
 /// Width of the legend.
 const LEGEND: u32 = 250;
-const FONT: &str = "sans-serif";
+pub(super) const FONT: &str = "sans-serif";
 /// Paul Tol's bright colours, which colour-blind people can tell apart, and two more.
 pub(super) const COLOURS: [RGBColor; 10] = [
     RGBColor(68, 119, 170),

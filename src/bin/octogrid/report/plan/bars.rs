@@ -6,12 +6,11 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::report::numbers::short;
-use crate::report::plot::COLOURS;
+use crate::report::plot::{COLOURS, FONT};
 
 /// The height of a group of bars.
 const ROW: u32 = 26;
 const WIDTH: u32 = 960;
-const FONT: &str = "sans-serif";
 
 /// Groups of bars with a name each.
 pub(super) struct Bars<'a> {

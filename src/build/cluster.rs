@@ -130,7 +130,12 @@ fn gather(mesh: &TriMesh<'_>, analysis: &Analysis, run: &[u32]) -> Cluster {
     let mut ids = [u32::MAX; WIDTH];
     ids.iter_mut().zip(run).for_each(|(id, &i)| *id = analysis.id(i));
     ids[..run.len()].sort_unstable();
-    Cluster::gather(run.len(), |lane| (ids[lane], mesh.corners(ids[lane])))
+    // Found first, so that in large meshes the eight of them are waited for together, and not one after the other.
+    let mut triangles = [[0; 3]; WIDTH];
+    for lane in 0..run.len() {
+        triangles[lane] = mesh.triangles()[ids[lane] as usize];
+    }
+    Cluster::gather(run.len(), |lane| (ids[lane], mesh.corners_of(triangles[lane])))
 }
 
 #[cfg(test)]

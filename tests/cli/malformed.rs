@@ -123,6 +123,14 @@ fn obj_files() {
 }
 
 #[test]
+fn mtl_files() {
+    let folder = folder();
+    folder.write("scene.obj", format!("mtllib words.mtl\n{QUADS}"));
+    folder.write("words.mtl", "newmtl a\nKd red 0 0\n");
+    check(&folder, "analyze scene.obj", 1, "octogrid: words.mtl:2: ");
+}
+
+#[test]
 fn npy_arrays() {
     let folder = folder();
     for (name, content, said) in npy_files() {

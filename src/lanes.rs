@@ -74,6 +74,8 @@ pub(crate) trait Lanes: Copy {
     fn mask(self, bits: u32) -> Self::Mask;
     /// a where the mask is true, else b.
     fn select(self, mask: Self::Mask, a: Self::F32, b: Self::F32) -> Self::F32;
+    /// The values a0 b0 a1 b1 and so on, in two halves.
+    fn interleave(self, a: Self::F32, b: Self::F32) -> [Self::F32; 2];
 
     /// Four f64 values.
     type F64: Copy
@@ -117,6 +119,22 @@ pub(crate) trait Lanes: Copy {
 #[inline(always)]
 pub(crate) fn axes<T>(f: impl Fn(usize) -> T) -> [T; 3] {
     [f(0), f(1), f(2)]
+}
+
+/// Columns of rows. Interleaving rows that are four apart moves the highest bit of a value's row behind the bits of its
+/// column, so that three times swap row and column.
+#[inline(always)]
+pub(crate) fn transpose<L: Lanes>(lanes: L, mut rows: [L::F32; WIDTH]) -> [L::F32; WIDTH] {
+    for _ in 0..3 {
+        let [[a, b], [c, d], [e, f], [g, h]] = [
+            lanes.interleave(rows[0], rows[4]),
+            lanes.interleave(rows[1], rows[5]),
+            lanes.interleave(rows[2], rows[6]),
+            lanes.interleave(rows[3], rows[7]),
+        ];
+        rows = [a, b, c, d, e, f, g, h];
+    }
+    rows
 }
 
 /// The lesser one of two numbers, `b` where one is NaN: one instruction, where f32's and f64's own are up to five.
@@ -207,6 +225,11 @@ impl<S: Simd> Lanes for Dispatched<S> {
     #[inline(always)]
     fn select(self, mask: mask32x8<S>, a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
         mask.select(a, b)
+    }
+    #[inline(always)]
+    fn interleave(self, a: f32x8<S>, b: f32x8<S>) -> [f32x8<S>; 2] {
+        let (low, high) = self.0.interleave_f32x8(a, b);
+        [low, high]
     }
 
     type F64 = f64x4<S>;
@@ -390,6 +413,16 @@ mod tests {
         let (low, high) =
             (lanes.min(lanes.load(&b), lanes.splat(1.0)), lanes.max(lanes.load(&b), lanes.splat(1.0)));
         assert_eq!(lanes.bits(lanes.less(low, high)), 0b1111_0111);
+        let rows = std::array::from_fn::<_, WIDTH, _>(|row| {
+            std::array::from_fn::<_, WIDTH, _>(|column| (8 * row + column) as f32)
+        });
+        let columns = transpose(lanes, rows.map(|row| lanes.load(&row))).map(|column| lanes.store(column));
+        assert_eq!(
+            columns,
+            std::array::from_fn::<_, WIDTH, _>(|column| std::array::from_fn::<_, WIDTH, _>(
+                |row| rows[row][column]
+            ))
+        );
         let (a, b) = (lanes.load4(&[1.0, 2.0, 3.0, f64::NAN]), lanes.splat4(9.0));
         let above = lanes.less4(lanes.splat4(1.5), a);
         assert_eq!(lanes.store4(lanes.select4(above, a, b)), [9.0, 2.0, 3.0, 9.0]);

@@ -43,7 +43,7 @@ impl Scene {
         const { assert!(1 <= N && N <= PACKETS, "one to eight packets") };
         let mut rays = [[Ray::new([0.0; 3], [0.0; 3]); RayPacket::LEN]; N];
         let mut lanes = [[(0, 0); RayPacket::LEN]; N];
-        let mut answers = [[Q::of(Hit::MISS); RayPacket::LEN]; N];
+        let mut answers = [[Q::up_to(0.0).answer(); RayPacket::LEN]; N];
         let (rays, lanes) = (rays.as_flattened_mut(), lanes.as_flattened_mut());
         let mut len = 0;
         for (i, packet) in packets.iter().enumerate() {
@@ -69,12 +69,7 @@ impl Scene {
         }
         let mut packets = [Packet::ZERO; N];
         let mut group = Group::new(&mut packets);
-        group.load(rays.len(), |i| rays[i]);
-        let together = traverse::group::<Q>(self.isa, &self.arena, &mut group);
-        if together {
-            answers.iter_mut().enumerate().for_each(|(i, answer)| *answer = Q::of(group.hit(i)));
-        }
-        together
+        traverse::group::<Q>(self.isa, &self.arena, &mut group, rays, answers)
     }
 }
 

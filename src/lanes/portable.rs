@@ -66,6 +66,14 @@ impl Lanes for Portable {
     fn select(self, mask: wide::f32x8, a: wide::f32x8, b: wide::f32x8) -> wide::f32x8 {
         mask.select(a, b)
     }
+    #[inline(always)]
+    fn interleave(self, a: wide::f32x8, b: wide::f32x8) -> [wide::f32x8; 2] {
+        let (a, b) = (a.to_array(), b.to_array());
+        [0, 4].map(|i| {
+            let [c, d] = [&a[i..i + 4], &b[i..i + 4]];
+            wide::f32x8::from([c[0], d[0], c[1], d[1], c[2], d[2], c[3], d[3]])
+        })
+    }
 
     type F64 = wide::f64x4;
     type Mask4 = wide::f64x4;

@@ -118,15 +118,11 @@ impl<Q: PerRay> Stream<'_, Q> {
         (0..WIDTH).for_each(|slot| self.close(slot));
     }
 
-    /// Traces neighbours together; false where they don't go alike, and nothing is answered.
+    /// Answers neighbours together; false where they don't go alike, and nothing is answered.
     fn run_of_rays(&mut self, at: usize, end: usize) -> bool {
-        let rays = &self.rays[at..end];
-        let together =
-            rays.len() >= FEWEST && trace::<Q>(self.scene, &mut self.group, rays.len(), |i| rays[i]);
-        if together {
-            (at..end).for_each(|i| self.answers[i] = Q::of(self.group.hit(i - at)));
-        }
-        together
+        let Scene { isa, arena, .. } = self.scene;
+        let (rays, answers) = (&self.rays[at..end], &mut self.answers[at..end]);
+        rays.len() >= FEWEST && traverse::group::<Q>(*isa, arena, &mut self.group, rays, answers)
     }
 
     /// Adds rays to the groups that are open; whether that paid.
@@ -163,30 +159,20 @@ impl<Q: PerRay> Stream<'_, Q> {
     fn close(&mut self, slot: usize) {
         let len = std::mem::take(&mut self.gather.len[slot]);
         let members = &self.gather.rays[slot][..len];
-        let ray = |i: usize| self.rays[members[i] as usize];
-        let together = len >= FEWEST && trace::<Q>(self.scene, &mut self.group, len, ray);
-        let mut answers = [Q::of(Hit::MISS); GROUP];
-        if together {
+        let mut rays = [self.rays[0]; GROUP];
+        let mut answers = [Q::up_to(0.0).answer(); GROUP];
+        (0..len).for_each(|i| rays[i] = self.rays[members[i] as usize]);
+        let (rays, answers) = (&rays[..len], &mut answers[..len]);
+        let Scene { isa, arena, .. } = self.scene;
+        if len >= FEWEST && traverse::group::<Q>(*isa, arena, &mut self.group, rays, answers) {
             self.gathered.together += len;
-            for i in 0..len {
-                let hit = self.group.hit(i);
-                self.gathered.blocked += usize::from(Q::WANTED == Wanted::Any && hit.is_hit());
-                answers[i] = Q::of(hit);
-            }
+            self.gathered.blocked += if Q::WANTED == Wanted::Any { self.group.found() } else { 0 };
         } else {
             self.gathered.refused += if len >= FEWEST { len } else { 0 };
-            let mut rays = [self.rays[0]; GROUP];
-            (0..len).for_each(|i| rays[i] = ray(i));
-            self.scene.each_ray::<Q>(&rays[..len], &mut answers[..len]);
+            self.scene.each_ray::<Q>(rays, answers);
         }
         (0..len).for_each(|i| self.answers[members[i] as usize] = answers[i]);
     }
-}
-
-/// Traces rays together; false where they don't go alike, and nothing is answered.
-fn trace<Q: PerRay>(scene: &Scene, group: &mut Group<'_>, len: usize, ray: impl Fn(usize) -> Ray) -> bool {
-    group.load(len, ray);
-    traverse::group::<Q>(scene.isa, &scene.arena, group)
 }
 
 fn stream<Q: PerRay>(scene: &Scene, rays: &[Ray], answers: &mut [Q::Answer]) {

@@ -3,12 +3,13 @@
 use super::hybrid::{Hybrid, Start};
 use super::leaf::LeafTest;
 use super::leaves_out_bricks;
+use super::nearest::Nearest;
 use crate::arena::{Arena, Form};
 use crate::dda::Quad;
 use crate::descent::Walk;
 use crate::hit::Hit;
 use crate::kernel::Exact;
-use crate::lanes::{Isa, Lanes, dispatch};
+use crate::lanes::{Isa, Lanes, WIDTH, dispatch};
 use crate::query::{Any, Closest, Query};
 use crate::ray::Ray;
 
@@ -17,8 +18,8 @@ pub(crate) trait PerRay: Query {
     type Answer: Copy + Send;
     fn up_to(t_max: f32) -> Self;
     fn answer(&self) -> Self::Answer;
-    /// The answer where the closest hit is known, or one of them if any will do.
-    fn of(hit: Hit) -> Self::Answer;
+    /// The answers of eight rays that have been traced together.
+    fn answers<L: Lanes>(lanes: L, nearest: &Nearest) -> [Self::Answer; WIDTH];
 }
 
 impl PerRay for Closest {
@@ -32,8 +33,8 @@ impl PerRay for Closest {
         self.hit()
     }
     #[inline(always)]
-    fn of(hit: Hit) -> Hit {
-        hit
+    fn answers<L: Lanes>(lanes: L, nearest: &Nearest) -> [Hit; WIDTH] {
+        nearest.hits(lanes)
     }
 }
 
@@ -48,8 +49,11 @@ impl PerRay for Any {
         self.found()
     }
     #[inline(always)]
-    fn of(hit: Hit) -> bool {
-        hit.is_hit()
+    fn answers<L: Lanes>(_lanes: L, nearest: &Nearest) -> [bool; WIDTH] {
+        std::array::from_fn(
+            #[inline(always)]
+            |lane| nearest.is_hit(lane),
+        )
     }
 }
 

@@ -156,10 +156,12 @@ fn bounds<L: Lanes>(lanes: L, group: &Group<'_>, side: usize, x: f32) -> [f32; 2
 
 #[inline(always)]
 fn least(x: &[f32; WIDTH]) -> f32 {
-    x.iter().fold(f32::INFINITY, |a, &b| lesser(b, a))
+    let [a, b, c, d, e, f, g, h] = *x;
+    lesser(lesser(lesser(a, b), lesser(c, d)), lesser(lesser(e, f), lesser(g, h)))
 }
 
 #[inline(always)]
 fn greatest(x: &[f32; WIDTH]) -> f32 {
-    x.iter().fold(f32::NEG_INFINITY, |a, &b| greater(b, a))
+    let [a, b, c, d, e, f, g, h] = *x;
+    greater(greater(greater(a, b), greater(c, d)), greater(greater(e, f), greater(g, h)))
 }

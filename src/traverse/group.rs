@@ -14,8 +14,7 @@
 use super::nearest::{Nearest, line};
 use crate::arena::Grid;
 use crate::filter::RayLanes;
-use crate::hit::Hit;
-use crate::lanes::{Doubles, Lanes, WIDTH};
+use crate::lanes::{Doubles, Lanes, WIDTH, transpose};
 use crate::ray::Ray;
 
 /// The most rays of a group.
@@ -61,7 +60,7 @@ pub(crate) struct Packet {
     start: [f64; WIDTH],
     speed: [f64; WIDTH],
     /// Scaled t a unit of t, and its inverse.
-    scale: [f64; WIDTH],
+    scale: [f32; WIDTH],
     pub(crate) unit: [f32; WIDTH],
 }
 
@@ -123,10 +122,11 @@ impl<'a> Group<'a> {
         self.len.div_ceil(WIDTH)
     }
 
-    /// The closest hit of a ray.
-    #[inline(always)]
-    pub(crate) fn hit(&self, ray: usize) -> Hit {
-        self.packets[ray / WIDTH].nearest.hit(ray % WIDTH)
+    /// How many rays have a hit.
+    pub(crate) fn found(&self) -> usize {
+        let found: u32 =
+            self.packets[..self.packets()].iter().map(|packet| packet.nearest.found().count_ones()).sum();
+        found as usize
     }
 
     /// One of the rays, but for its interval.
@@ -135,28 +135,11 @@ impl<'a> Group<'a> {
         line(&self.packets[packet].origin, &self.packets[packet].dir, lane)
     }
 
-    /// Takes one ray or more.
+    /// Takes one ray or more, and finds their lines and spans; false where they don't go alike, or one is not valid.
     #[inline(always)]
-    pub(crate) fn load(&mut self, len: usize, ray: impl Fn(usize) -> Ray) {
-        self.len = len;
-        for packet in 0..self.packets() {
-            let out = &mut self.packets[packet];
-            for lane in 0..WIDTH {
-                let ray = ray((packet * WIDTH + lane).min(len - 1));
-                for axis in 0..3 {
-                    out.origin[axis][lane] = ray.origin[axis];
-                    out.dir[axis][lane] = ray.dir[axis];
-                }
-                out.after[lane] = ray.t_min;
-                out.nearest.start(lane, ray.t_max);
-            }
-        }
-    }
-
-    /// Finds the lines and spans of the rays; false where they don't go alike, or one is not valid.
-    #[inline(always)]
-    pub(crate) fn prepare<L: Doubles>(&mut self, lanes: L, grid: &Grid) -> bool {
-        let first = self.line(0, 0).dir;
+    pub(crate) fn load<L: Doubles>(&mut self, lanes: L, grid: &Grid, rays: &[Ray]) -> bool {
+        self.len = rays.len();
+        let first = rays[0].dir;
         let size = first.abs();
         self.main = if size.x >= size.y && size.x >= size.z {
             0
@@ -168,7 +151,8 @@ impl<'a> Group<'a> {
         self.others = [(self.main + 1) % 3, (self.main + 2) % 3];
         self.rises = first[self.main] > 0.0;
         self.slack = (SLACK * f64::from(grid.longest())) as f32;
-        for packet in 0..self.packets() {
+        for (packet, rays) in rays.chunks(WIDTH).enumerate() {
+            self.packets[packet].load(lanes, rays);
             if !self.packet(lanes, grid, packet) {
                 return false;
             }
@@ -225,20 +209,18 @@ impl<'a> Group<'a> {
         let largest = lanes.max(lanes.max(load(&out.dir[0]), load(&out.dir[1])), load(&out.dir[2]));
         let (short, long) = (lanes.splat(2f32.powi(-LONGEST)), lanes.splat(2f32.powi(LONGEST)));
         fit &= lanes.bits(lanes.less(short, largest) & lanes.less(largest, long));
-        let wide = lanes.store8(lanes.widen(largest));
-        let mut factor = [0.0; WIDTH];
+        let largest = lanes.store(largest);
         for lane in 0..WIDTH {
-            // 2^-e and 2^e, where the largest component is in [2^(e - 1), 2^e); anything where it does not fit.
-            let exponent = wide[lane].to_bits() >> 52;
-            factor[lane] = f64::from_bits(2045u64.wrapping_sub(exponent) << 52);
-            out.scale[lane] = f64::from_bits((exponent + 1) << 52);
-            out.unit[lane] = factor[lane] as f32;
+            // 2^e and 2^-e, where the largest component is in [2^(e - 1), 2^e); anything where it does not fit.
+            let exponent = largest[lane].to_bits() >> 23;
+            out.scale[lane] = f32::from_bits((exponent + 1) << 23);
+            out.unit[lane] = f32::from_bits(253u32.wrapping_sub(exponent) << 23);
         }
-        let factor = lanes.load8(&factor);
+        let unit = lanes.load(&out.unit);
         for axis in 0..3 {
-            out.scaled[axis] = lanes.store(lanes.narrow(widened(lanes, &out.dir[axis]) * factor));
+            out.scaled[axis] = lanes.store(lanes.load(&out.dir[axis]) * unit);
         }
-        let scale = lanes.load8(&out.scale);
+        let scale = widened(lanes, &out.scale);
         let t_min = -above(lanes, lanes.splat8(0.0) - widened(lanes, &out.after) * scale);
         // Zero is exact, and what is added to it would be subnormal: slow to multiply by, for each triangle.
         let zero = lanes.splat(0.0);
@@ -250,6 +232,18 @@ impl<'a> Group<'a> {
 }
 
 impl Packet {
+    /// Takes up to eight rays, and has the last one again where they are fewer.
+    #[inline(always)]
+    fn load<L: Lanes>(&mut self, lanes: L, rays: &[Ray]) {
+        let ray = |i: usize| lanes.load(bytemuck::cast_ref(&rays[i.min(rays.len() - 1)]));
+        let rows = [ray(0), ray(1), ray(2), ray(3), ray(4), ray(5), ray(6), ray(7)];
+        let [x, y, z, t_min, dx, dy, dz, t_max] = transpose(lanes, rows);
+        self.origin = [lanes.store(x), lanes.store(y), lanes.store(z)];
+        self.dir = [lanes.store(dx), lanes.store(dy), lanes.store(dz)];
+        self.after = lanes.store(t_min);
+        self.nearest = Nearest::up_to(lanes, t_max);
+    }
+
     /// Rays with a hit are done.
     #[inline(always)]
     pub(crate) fn finish(&mut self) {
@@ -271,7 +265,7 @@ impl Packet {
             let x = lanes.max(lanes.load(&self.span[0]), x - lanes.splat(slack));
             self.span[0] = lanes.store(x);
         }
-        self.t_max = lanes.store(above(lanes, t * lanes.load8(&self.scale)));
+        self.t_max = lanes.store(above(lanes, t * widened(lanes, &self.scale)));
     }
 }
 

@@ -22,7 +22,7 @@ use crate::arena::{Arena, Form};
 use crate::dda::{Clip, Path};
 use crate::descent::Walk;
 use crate::kernel::{Exact, Test};
-use crate::lanes::{Isa, Lanes, dispatch};
+use crate::lanes::{Isa, Lanes, WIDTH, dispatch};
 use crate::query::Query;
 use crate::ray::Ray;
 pub(crate) use batch::{PerRay, batch};
@@ -194,13 +194,26 @@ fn every_cluster<V: Visit>(arena: &Arena, visit: &mut V) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Traces the rays of a group together; false where they don't go alike, and its hits mean nothing.
+/// Answers rays together, up to [`GROUP`]; false where they don't go alike, and nothing is answered.
 #[inline(never)]
-pub(crate) fn group<Q: PerRay>(isa: Isa, arena: &Arena, group: &mut Group<'_>) -> bool {
+pub(crate) fn group<Q: PerRay>(
+    isa: Isa,
+    arena: &Arena,
+    group: &mut Group<'_>,
+    rays: &[Ray],
+    answers: &mut [Q::Answer],
+) -> bool {
     if arena.form != Form::Bricks {
         return false;
     }
     dispatch!(isa, lanes => {
-        group.prepare(lanes, &arena.grid) && Coherent::<_, Q>::run(lanes, arena, group)
+        let together =
+            group.load(lanes, &arena.grid, rays) && Coherent::<_, Q>::run(lanes, arena, group);
+        if together {
+            for (packet, answers) in group.packets.iter().zip(answers.chunks_mut(WIDTH)) {
+                answers.copy_from_slice(&Q::answers(lanes, &packet.nearest)[..answers.len()]);
+            }
+        }
+        together
     })
 }

@@ -59,13 +59,30 @@ impl Nearest {
         (self.prim[lane], self.cluster[lane]) = (u32::MAX, NONE);
     }
 
-    /// The hit, once it is decided.
+    /// None yet, with nothing beyond `t_max`.
     #[inline(always)]
-    pub(crate) fn hit(&self, lane: usize) -> Hit {
-        match self.prim[lane] {
-            u32::MAX => Hit::MISS,
-            prim => Hit { t: self.t[lane], u: self.u[lane], v: self.v[lane], prim },
-        }
+    pub(crate) fn up_to<L: Lanes>(lanes: L, t_max: L::F32) -> Self {
+        let t = lanes.store(t_max);
+        Self { t, low: t, prim: [u32::MAX; WIDTH], cluster: [NONE; WIDTH], ..Self::ZERO }
+    }
+
+    /// The hits, once they are decided.
+    #[inline(always)]
+    pub(crate) fn hits<L: Lanes>(&self, lanes: L) -> [Hit; WIDTH] {
+        let hits = lanes.mask(self.found());
+        let t = lanes.select(hits, lanes.load(&self.t), lanes.splat(Hit::MISS.t));
+        let u = lanes.select(hits, lanes.load(&self.u), lanes.splat(Hit::MISS.u));
+        let v = lanes.select(hits, lanes.load(&self.v), lanes.splat(Hit::MISS.v));
+        let prim = lanes.load(bytemuck::cast_ref(&self.prim));
+        let ([tv0, tv1], [up0, up1]) = (lanes.interleave(t, v), lanes.interleave(u, prim));
+        let ([a, b], [c, d]) = (lanes.interleave(tv0, up0), lanes.interleave(tv1, up1));
+        bytemuck::cast([lanes.store(a), lanes.store(b), lanes.store(c), lanes.store(d)])
+    }
+
+    /// The lanes with a hit, as bits.
+    #[inline(always)]
+    pub(crate) fn found(&self) -> u32 {
+        (0..WIDTH).fold(0, |bits, lane| bits | u32::from(self.is_hit(lane)) << lane)
     }
 
     /// Whether there is a hit.

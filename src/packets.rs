@@ -4,7 +4,7 @@ use crate::hit::{Hit, HitPacket};
 use crate::query::{Any, Closest};
 use crate::ray::{Ray, RayPacket};
 use crate::scene::Scene;
-use crate::traverse::{self, FEWEST, Group, PACKETS, Packet, PerRay};
+use crate::traverse::{self, FEWEST, Group, Outcome, PACKETS, Packet, PerRay};
 
 impl Scene {
     /// [`Scene::closest`] of each ray of N packets, traced together where they go alike: a packet of 16 rays
@@ -69,7 +69,7 @@ impl Scene {
         }
         let mut packets = [Packet::ZERO; N];
         let mut group = Group::new(&mut packets);
-        traverse::group::<Q>(self.isa, &self.arena, &mut group, rays, answers)
+        traverse::group::<Q>(self.isa, &self.arena, &mut group, rays, answers) == Outcome::Answered
     }
 }
 

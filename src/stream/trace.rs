@@ -9,7 +9,7 @@ use crate::lanes::{WIDTH, dispatch};
 use crate::query::{Any, Closest, Wanted};
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::traverse::{self, FEWEST, GROUP, Group, PACKETS, Packet, PerRay};
+use crate::traverse::{self, FEWEST, GROUP, Group, Outcome, PACKETS, Packet, PerRay};
 
 /// Rays a task.
 const CHUNK: usize = 4096;
@@ -17,8 +17,11 @@ const CHUNK: usize = 4096;
 /// Rays after which it is judged whether gathering pays.
 const BLOCK: usize = 256;
 
-/// Blocks that are traced ray by ray after one in which it did not pay.
-const PAUSE: usize = 15;
+/// Blocks that are gathered after one in which it paid.
+const GATHERED: usize = 15;
+
+/// Groups that are traced ray by ray after a block in which it did not pay.
+const PAUSE: usize = 60;
 
 /// Groups that the first 64 rays of a block may open: more show that rays go all ways.
 const MOST_OPENED: usize = 16;
@@ -56,7 +59,7 @@ enum Mode {
     Runs,
     /// Gathered into groups, for so many blocks more.
     Gather(usize),
-    /// Ray by ray, for so many blocks more.
+    /// Ray by ray, for so many groups more.
     Single(usize),
 }
 
@@ -93,24 +96,36 @@ impl<Q: PerRay> Stream<'_, Q> {
     fn run(&mut self) {
         let mut mode =
             if self.scene.arena.form == Form::Bricks { Mode::Runs } else { Mode::Single(usize::MAX) };
+        // Groups alone after the last one that was given up: more and more, until one is answered.
+        let mut alone = 0;
         let mut at = 0;
         while at < self.rays.len() {
-            let end = self.rays.len().min(at + if matches!(mode, Mode::Runs) { GROUP } else { BLOCK });
+            let end = self.rays.len().min(at + if matches!(mode, Mode::Gather(_)) { BLOCK } else { GROUP });
             mode = match mode {
-                Mode::Runs if self.run_of_rays(at, end) => Mode::Runs,
-                Mode::Runs => {
-                    mode = Mode::Gather(0);
-                    continue;
-                }
+                Mode::Runs => match self.run_of_rays(at, end) {
+                    Outcome::Answered => {
+                        alone = 0;
+                        Mode::Runs
+                    }
+                    Outcome::Apart => {
+                        mode = Mode::Gather(0);
+                        continue;
+                    }
+                    Outcome::GivenUp => {
+                        alone = PAUSE.min(2 * alone + 1);
+                        mode = Mode::Single(alone);
+                        continue;
+                    }
+                },
                 Mode::Gather(blocks) => match self.gather(at, end) {
-                    true if blocks == 0 => Mode::Gather(PAUSE),
+                    true if blocks == 0 => Mode::Gather(GATHERED),
                     true if blocks == 1 => Mode::Runs,
                     true => Mode::Gather(blocks - 1),
                     false => Mode::Single(PAUSE),
                 },
-                Mode::Single(blocks) => {
+                Mode::Single(groups) => {
                     self.scene.each_ray::<Q>(&self.rays[at..end], &mut self.answers[at..end]);
-                    if blocks == 0 { Mode::Runs } else { Mode::Single(blocks - 1) }
+                    if groups > 1 { Mode::Single(groups - 1) } else { Mode::Runs }
                 }
             };
             at = end;
@@ -118,11 +133,14 @@ impl<Q: PerRay> Stream<'_, Q> {
         (0..WIDTH).for_each(|slot| self.close(slot));
     }
 
-    /// Answers neighbours together; false where they don't go alike, and nothing is answered.
-    fn run_of_rays(&mut self, at: usize, end: usize) -> bool {
+    /// Answers neighbours together.
+    fn run_of_rays(&mut self, at: usize, end: usize) -> Outcome {
         let Scene { isa, arena, .. } = self.scene;
         let (rays, answers) = (&self.rays[at..end], &mut self.answers[at..end]);
-        rays.len() >= FEWEST && traverse::group::<Q>(*isa, arena, &mut self.group, rays, answers)
+        if rays.len() < FEWEST {
+            return Outcome::Apart;
+        }
+        traverse::group::<Q>(*isa, arena, &mut self.group, rays, answers)
     }
 
     /// Adds rays to the groups that are open; whether that paid.
@@ -164,7 +182,8 @@ impl<Q: PerRay> Stream<'_, Q> {
         (0..len).for_each(|i| rays[i] = self.rays[members[i] as usize]);
         let (rays, answers) = (&rays[..len], &mut answers[..len]);
         let Scene { isa, arena, .. } = self.scene;
-        if len >= FEWEST && traverse::group::<Q>(*isa, arena, &mut self.group, rays, answers) {
+        let mut together = || traverse::group::<Q>(*isa, arena, &mut self.group, rays, answers);
+        if len >= FEWEST && together() == Outcome::Answered {
             self.gathered.together += len;
             self.gathered.blocked += if Q::WANTED == Wanted::Any { self.group.found() } else { 0 };
         } else {

@@ -194,7 +194,17 @@ fn every_cluster<V: Visit>(arena: &Arena, visit: &mut V) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Answers rays together, up to [`GROUP`]; false where they don't go alike, and nothing is answered.
+/// What has become of rays that were to be answered together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    Answered,
+    /// They don't go alike; nothing is answered.
+    Apart,
+    /// They go alike, but what they meet is so small that they are faster alone; nothing is answered.
+    GivenUp,
+}
+
+/// Answers rays together, up to [`GROUP`].
 #[inline(never)]
 pub(crate) fn group<Q: PerRay>(
     isa: Isa,
@@ -202,18 +212,20 @@ pub(crate) fn group<Q: PerRay>(
     group: &mut Group<'_>,
     rays: &[Ray],
     answers: &mut [Q::Answer],
-) -> bool {
+) -> Outcome {
     if arena.form != Form::Bricks {
-        return false;
+        return Outcome::Apart;
     }
     dispatch!(isa, lanes => {
-        let together =
-            group.load(lanes, &arena.grid, rays) && Coherent::<_, Q>::run(lanes, arena, group);
-        if together {
+        if !group.load(lanes, &arena.grid, rays) {
+            return Outcome::Apart;
+        }
+        let outcome = Coherent::<_, Q>::run(lanes, arena, group);
+        if outcome == Outcome::Answered {
             for (packet, answers) in group.packets.iter().zip(answers.chunks_mut(WIDTH)) {
                 answers.copy_from_slice(&Q::answers(lanes, &packet.nearest)[..answers.len()]);
             }
         }
-        together
+        outcome
     })
 }

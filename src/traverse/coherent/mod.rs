@@ -14,6 +14,7 @@ mod leaf;
 
 use std::marker::PhantomData;
 
+use super::Outcome;
 use super::frustum::{Frustum, span};
 use super::group::{Group, Packet};
 use crate::arena::{Arena, Voxel};
@@ -28,7 +29,7 @@ const WIDEST: f32 = 0.2;
 /// What a group may do for each of its rays: visit a voxel, test a group of boxes, or test a box against its
 /// rays. Where it does more, as with rays that are far apart in the scale of what they meet, they are faster
 /// alone.
-const EFFORT: u32 = 8;
+const EFFORT: u32 = 12;
 
 /// Traces a group.
 pub(crate) struct Coherent<'a, 'b, L, Q> {
@@ -45,13 +46,13 @@ pub(crate) struct Coherent<'a, 'b, L, Q> {
 }
 
 impl<'a, 'b, L: Doubles, Q: Query> Coherent<'a, 'b, L, Q> {
-    /// Traces a group; false where it spreads too far, and its hits mean nothing.
+    /// Traces a group.
     #[inline(always)]
-    pub(crate) fn run(lanes: L, arena: &'a Arena, group: &'a mut Group<'b>) -> bool {
+    pub(crate) fn run(lanes: L, arena: &'a Arena, group: &'a mut Group<'b>) -> Outcome {
         let longest = arena.grid.longest() as f32;
-        let Some(frustum) = Frustum::around(lanes, group, longest) else { return true };
+        let Some(frustum) = Frustum::around(lanes, group, longest) else { return Outcome::Answered };
         if frustum.width() > WIDEST * longest {
-            return false;
+            return Outcome::Apart;
         }
         let bundle = frustum.bundle(&arena.grid);
         let effort = EFFORT * group.len as u32;
@@ -68,10 +69,11 @@ impl<'a, 'b, L: Doubles, Q: Query> Coherent<'a, 'b, L, Q> {
             query: PhantomData,
         };
         walk.slices();
-        if walk.effort > 0 {
-            walk.finish();
+        if walk.effort == 0 {
+            return Outcome::GivenUp;
         }
-        walk.effort > 0
+        walk.finish();
+        Outcome::Answered
     }
 
     /// Decides which hits are the closest.

@@ -123,6 +123,7 @@ impl<'a> Group<'a> {
     }
 
     /// How many rays have a hit.
+    #[cfg(feature = "parallel")]
     pub(crate) fn found(&self) -> usize {
         let found: u32 =
             self.packets[..self.packets()].iter().map(|packet| packet.nearest.found().count_ones()).sum();

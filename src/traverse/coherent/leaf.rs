@@ -132,28 +132,33 @@ impl<L: Doubles, Q: Query> Coherent<'_, '_, L, Q> {
         } else {
             Some(self.bundle.candidates(self.lanes, cluster) & u32::from(cluster.occupied()))
         };
-        let mut many = 0u32;
-        for i in 0..self.group.packets() {
-            let mut active = (rays >> (8 * i)) as u32 & 0xff;
-            // A triangle against a packet takes some 0.8 of the time of a cluster against a ray.
-            if let Some(triangles) = triangles
-                && 4 * triangles.count_ones() <= 5 * active.count_ones()
-            {
-                many |= 1 << i;
-                continue;
+        let (mut many, mut singles) = (0u32, rays);
+        if let Some(triangles) = triangles {
+            for i in 0..self.group.packets() {
+                let packet = rays & 0xff << (8 * i);
+                // A triangle against a packet takes some 0.8 of the time of a cluster against a ray.
+                if packet != 0 && 4 * triangles.count_ones() <= 5 * packet.count_ones() {
+                    many |= 1 << i;
+                    singles &= !packet;
+                }
             }
-            let mut closer = false;
-            while active != 0 {
-                let lane = active.trailing_zeros() as usize;
-                active &= active - 1;
-                closer |= self.single(index, i, lane);
-            }
-            self.narrow_packet(i, closer);
+        }
+        let mut narrower = 0u32;
+        while singles != 0 {
+            let ray = singles.trailing_zeros() as usize;
+            singles &= singles - 1;
+            let (i, lane) = (ray / WIDTH, ray % WIDTH);
+            narrower |= u32::from(self.single(index, i, lane)) << i;
         }
         if let Some(triangles) = triangles
             && many != 0
         {
-            self.packets(index, triangles, rays, many);
+            narrower |= self.packets(index, triangles, rays, many);
+        }
+        while narrower != 0 {
+            let i = narrower.trailing_zeros() as usize;
+            narrower &= narrower - 1;
+            self.narrow_packet(i);
         }
     }
 
@@ -192,9 +197,9 @@ impl<L: Doubles, Q: Query> Coherent<'_, '_, L, Q> {
         closer
     }
 
-    /// Triangles of a cluster against the packets in `many`.
+    /// Triangles of a cluster against the packets in `many`; those in which a hit is closer than those before.
     #[inline(always)]
-    fn packets(&mut self, index: u32, mut triangles: u32, rays: u64, many: u32) {
+    fn packets(&mut self, index: u32, mut triangles: u32, rays: u64, many: u32) -> u32 {
         let (lanes, cluster) = (self.lanes, &self.arena.clusters[index as usize]);
         let mut narrower = 0u32;
         while triangles != 0 {
@@ -219,11 +224,7 @@ impl<L: Doubles, Q: Query> Coherent<'_, '_, L, Q> {
                 }
             }
         }
-        while narrower != 0 {
-            let i = narrower.trailing_zeros() as usize;
-            narrower &= narrower - 1;
-            self.narrow_packet(i, true);
-        }
+        narrower
     }
 
     /// Rays of a packet may hit a triangle; some certainly do, with t between two bounds. The lanes whose hit is closer
@@ -260,13 +261,11 @@ impl<L: Doubles, Q: Query> Coherent<'_, '_, L, Q> {
 
     /// Follows hits that are closer.
     #[inline(always)]
-    fn narrow_packet(&mut self, i: usize, closer: bool) {
-        if closer {
-            self.changed = true;
-            let (rises, slack) = (self.group.rises, self.group.slack);
-            let packet = &mut self.group.packets[i];
-            if Q::WANTED == Wanted::Any { packet.finish() } else { packet.shorten(self.lanes, rises, slack) }
-        }
+    fn narrow_packet(&mut self, i: usize) {
+        self.changed = true;
+        let (rises, slack) = (self.group.rises, self.group.slack);
+        let packet = &mut self.group.packets[i];
+        if Q::WANTED == Wanted::Any { packet.finish() } else { packet.shorten(self.lanes, rises, slack) }
     }
 }
 

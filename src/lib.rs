@@ -37,8 +37,8 @@ mod triangle;
 mod validate;
 
 pub use build::{
-    BuildError, BuildOptions, Decision, Forced, HybridParams, OctreeParams, Part, Plan, RecursiveParams,
-    SceneProfile, Structure, UniformParams,
+    BuildError, BuildOptions, Decision, Forced, HybridParams, OctreeParams, Part, Plan, Quality,
+    RecursiveParams, SceneProfile, Structure, UniformParams,
 };
 pub use cluster::Cluster;
 #[cfg(feature = "file")]

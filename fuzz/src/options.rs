@@ -3,7 +3,8 @@
 use arbitrary::Arbitrary;
 use octogrid::descent::Walk;
 use octogrid::{
-    BuildOptions, Forced, HybridParams, Isa, OctreeParams, Part, RecursiveParams, Structure, UniformParams,
+    BuildOptions, Forced, HybridParams, Isa, OctreeParams, Part, Quality, RecursiveParams, Structure,
+    UniformParams,
 };
 
 /// Any parameters of any structure.
@@ -33,6 +34,8 @@ impl Options {
                 _ => Some(self.structure.into()),
             },
             forced: self.forced(),
+            // The lowest bit of the memory limit.
+            quality: if self.memory_limit >> 12 & 1 == 0 { Quality::Balanced } else { Quality::Fast },
             memory_limit: self.memory_limit as usize >> 12,
             isa,
             walk: if self.general_walk { Walk::General } else { Walk::Special },

@@ -10,11 +10,15 @@
 //! Both splits are by the surface area heuristic ([`super::sah`]). Coplanar neighbours come together, as a
 //! flat box has the least area. That the first split is of cells, not of triangles, spares most of
 //! O(n log n) and changes little: few triangles lie near a boundary between runs.
+//!
+//! [`Quality::Fast`] splits nothing: cells follow one another along a [`Curve`], and so do the triangles of clusters.
 
 use std::ops::Range;
 
 use super::analysis::{Analysis, Around};
+use super::curve::Curve;
 use super::grid::{self, Places};
+use super::options::Quality;
 use super::sah::{self, Member};
 use crate::aabb::Aabb;
 use crate::cluster::Cluster;
@@ -28,11 +32,15 @@ const RUN: usize = 64;
 /// Gathers the triangles of the analysis into clusters, neighbours near each other.
 ///
 /// The same for any number of threads.
-pub(crate) fn clusters(mesh: &TriMesh<'_>, analysis: &Analysis) -> Vec<Cluster> {
+pub(crate) fn clusters(mesh: &TriMesh<'_>, analysis: &Analysis, quality: Quality) -> Vec<Cluster> {
     let boxes = &analysis.boxes;
     let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
     let mut ends = vec![false; order.len()];
-    arrange(boxes, &analysis.centers, &mut order, &mut ends);
+    arrange(boxes, &analysis.centers, &mut order, &mut ends, quality);
+    if quality == Quality::Fast {
+        let chunks: Vec<&[u32]> = order.chunks(WIDTH).collect();
+        return parallel::map(&chunks, |chunk| gather(mesh, analysis, chunk));
+    }
     let found = runs(&ends);
     parallel::for_each(parts(&mut order, &mut ends, &found), |(run, ends)| {
         let mut members: Vec<Member> = run.iter().map(|&i| Member::new(i, &boxes[i as usize])).collect();
@@ -73,19 +81,28 @@ fn parts<'a>(
     parts.iter().map(&mut next).collect()
 }
 
-/// Orders triangles by runs of neighbours and marks the last of each run.
-fn arrange(boxes: &[Aabb], centers: &Aabb, order: &mut [u32], ends: &mut [bool]) {
+/// Orders triangles by runs of neighbours and marks the last of each run; those of [`Quality::Fast`] are cells.
+fn arrange(boxes: &[Aabb], centers: &Aabb, order: &mut [u32], ends: &mut [bool], quality: Quality) {
     const CROWDED: usize = 256;
-    let (cells, sorted) = sort_by_cell(boxes, centers, order);
-    let bounds =
-        |cell: &Range<usize>| Around::new(sorted[cell.clone()].iter().map(|&i| &boxes[i as usize])).bounds;
-    let around = parallel::map(&cells, bounds);
-    let mut groups: Vec<Member> = (0..).zip(&around).map(|(i, b)| Member::new(i, b)).collect();
-    let mut last = vec![false; groups.len()];
-    sah::split(&mut groups, &mut last, &|group: &Member| cells[group.index() as usize].len(), RUN);
+    let grid = grid::cubic(centers, order.len() as f64 / 4.0);
+    let (cells, sorted, groups, last) = match quality {
+        Quality::Fast => {
+            let curve = Curve::new(&grid);
+            let (cells, sorted) = sort_by_cell(boxes, order, curve.len(), |b| curve.of(b));
+            let groups = (0..cells.len() as u32).collect();
+            let last = vec![true; cells.len()];
+            (cells, sorted, groups, last)
+        }
+        Quality::Balanced => {
+            let places = Places::new(&grid);
+            let (cells, sorted) = sort_by_cell(boxes, order, grid.len(), |b| places.of(b));
+            let (groups, last) = split_cells(boxes, &cells, &sorted);
+            (cells, sorted, groups, last)
+        }
+    };
     let (mut start, mut end, mut crowds) = (0, 0, Vec::new());
-    for (group, last) in groups.iter().zip(last) {
-        let cell = &sorted[cells[group.index() as usize].clone()];
+    for (group, last) in groups.into_iter().zip(last) {
+        let cell = &sorted[cells[group as usize].clone()];
         order[end..end + cell.len()].copy_from_slice(cell);
         end += cell.len();
         if last {
@@ -98,29 +115,43 @@ fn arrange(boxes: &[Aabb], centers: &Aabb, order: &mut [u32], ends: &mut [bool])
     }
     parallel::for_each(parts(order, ends, &crowds), |(crowd, ends)| {
         let centers = Around::new(crowd.iter().map(|&i| &boxes[i as usize])).centers;
-        arrange(boxes, &centers, crowd, ends);
+        arrange(boxes, &centers, crowd, ends, quality);
     });
 }
 
-/// The triangles sorted by the cell of a grid that their centre is in, and the range of each cell that has
-/// any. Counting sort.
-fn sort_by_cell(boxes: &[Aabb], centers: &Aabb, order: &[u32]) -> (Vec<Range<usize>>, Vec<u32>) {
-    let grid = grid::cubic(centers, order.len() as f64 / 4.0);
-    let places = Places::new(&grid);
-    let cells = parallel::map(order, |&i| places.of(&boxes[i as usize]));
-    let mut next = vec![0; grid.len()];
+/// The order of cells by runs of few triangles, and which of them end a run.
+fn split_cells(boxes: &[Aabb], cells: &[Range<usize>], sorted: &[u32]) -> (Vec<u32>, Vec<bool>) {
+    let bounds =
+        |cell: &Range<usize>| Around::new(sorted[cell.clone()].iter().map(|&i| &boxes[i as usize])).bounds;
+    let around = parallel::map(cells, bounds);
+    let mut groups: Vec<Member> = (0..).zip(&around).map(|(i, b)| Member::new(i, b)).collect();
+    let mut last = vec![false; groups.len()];
+    sah::split(&mut groups, &mut last, &|group: &Member| cells[group.index() as usize].len(), RUN);
+    (groups.iter().map(Member::index).collect(), last)
+}
+
+/// The triangles sorted by the cells of a grid, of which each has a place below `len`, and the range of each cell that
+/// has any. Counting sort.
+fn sort_by_cell(
+    boxes: &[Aabb],
+    order: &[u32],
+    len: usize,
+    place: impl Fn(&Aabb) -> u32 + Sync + Send,
+) -> (Vec<Range<usize>>, Vec<u32>) {
+    let cells = parallel::map(order, |&i| place(&boxes[i as usize]));
+    let mut next = vec![0u32; len];
     cells.iter().for_each(|&cell| next[cell as usize] += 1);
     let mut ranges = Vec::new();
     let mut start = 0;
     for count in &mut next {
         if *count > 0 {
-            ranges.push(start..start + *count);
+            ranges.push(start as usize..(start + *count) as usize);
         }
         start += std::mem::replace(count, start);
     }
     let mut sorted = vec![0; order.len()];
     for (&i, &cell) in order.iter().zip(&cells) {
-        sorted[next[cell as usize]] = i;
+        sorted[next[cell as usize] as usize] = i;
         next[cell as usize] += 1;
     }
     (ranges, sorted)
@@ -145,14 +176,17 @@ mod tests {
     #[test]
     fn every_triangle_is_in_one_cluster() {
         let vertices: Vec<[f32; 3]> =
-            (0..300u32).map(|i| [(i * 7 % 31) as f32, (i * 5 % 17) as f32, (i * i % 13) as f32]).collect();
-        let triangles: Vec<[u32; 3]> = (0..100).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+            (0..9000u32).map(|i| [(i * 7 % 31) as f32, (i * 5 % 17) as f32, (i * i % 13) as f32]).collect();
+        let triangles: Vec<[u32; 3]> = (0..3000).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let mesh = TriMesh::new(&vertices, &triangles).unwrap();
         let analysis = Analysis::new(&mesh);
-        let clusters = clusters(&mesh, &analysis);
-        let mut ids: Vec<u32> = clusters.iter().flat_map(|c| *c.ids()).filter(|&i| i != u32::MAX).collect();
-        ids.sort_unstable();
-        assert!(ids.into_iter().eq(analysis.ids()));
+        for quality in [Quality::Fast, Quality::Balanced] {
+            let clusters = clusters(&mesh, &analysis, quality);
+            let ids = clusters.iter().flat_map(|c| *c.ids()).filter(|&i| i != u32::MAX);
+            let mut ids: Vec<u32> = ids.collect();
+            ids.sort_unstable();
+            assert!(ids.into_iter().eq(analysis.ids()), "{quality:?}");
+        }
     }
 
     #[test]
@@ -160,6 +194,8 @@ mod tests {
         let vertices = [[0.0f32; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let triangles = [[0, 1, 2]; 100];
         let mesh = TriMesh::new(&vertices, &triangles).unwrap();
-        assert_eq!(clusters(&mesh, &Analysis::new(&mesh)).len(), 13);
+        for quality in [Quality::Fast, Quality::Balanced] {
+            assert_eq!(clusters(&mesh, &Analysis::new(&mesh), quality).len(), 13);
+        }
     }
 }

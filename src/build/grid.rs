@@ -89,13 +89,20 @@ impl Places {
         }
     }
 
+    /// The index of the voxel along each axis.
     #[inline(always)]
-    pub(super) fn of(&self, b: &Aabb) -> u32 {
+    pub(super) fn at(&self, b: &Aabb) -> [u32; 3] {
         let place = ((b.center4() - self.lo) * self.per_length - 0.5).max(Vec4::ZERO) + WHOLE;
         let place = place.to_array();
         // Infinity and NaN, in scenes at the ends of the range of f32, are above all others.
         let index = |axis: usize| place[axis].to_bits().wrapping_sub(WHOLE.to_bits()).min(self.last[axis]);
-        (0..3).map(|axis| index(axis) * self.strides[axis]).sum()
+        [index(0), index(1), index(2)]
+    }
+
+    #[inline(always)]
+    pub(super) fn of(&self, b: &Aabb) -> u32 {
+        let at = self.at(b);
+        (0..3).map(|axis| at[axis] * self.strides[axis]).sum()
     }
 }
 

@@ -5,6 +5,7 @@
 
 mod analysis;
 mod cluster;
+mod curve;
 mod divide;
 mod grid;
 mod options;
@@ -17,7 +18,7 @@ mod split;
 mod voxel;
 
 pub use options::{
-    BuildError, BuildOptions, HybridParams, OctreeParams, RecursiveParams, Structure, UniformParams,
+    BuildError, BuildOptions, HybridParams, OctreeParams, Quality, RecursiveParams, Structure, UniformParams,
 };
 pub use plan::{Decision, Forced, Part, Plan};
 pub use profile::SceneProfile;
@@ -57,7 +58,7 @@ fn structured(
 ) -> Result<Arena, BuildError> {
     let clusters = match structure {
         Structure::Brute => cluster::in_order(mesh, analysis),
-        _ => cluster::clusters(mesh, analysis),
+        _ => cluster::clusters(mesh, analysis, options.quality),
     };
     match structure {
         Structure::Uniform(p) => finish(&policy::Uniform::new(p, analysis), clusters, analysis, 0, options),

@@ -128,6 +128,25 @@ impl fmt::Display for Structure {
     }
 }
 
+/// How much work a build puts into clusters: groups of eight triangles that a ray tests at once.
+///
+/// ```
+/// use octogrid::{BuildOptions, Quality, Ray, Scene, builtin};
+/// let options = BuildOptions { quality: Quality::Fast, ..Default::default() };
+/// let scene = Scene::build(&builtin::cube().mesh()?, &options)?;
+/// assert!(scene.closest(&Ray::new([0.2, 0.1, 9.0], [0.0, 0.0, -1.0])).is_hit());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Quality {
+    /// Triangles that follow one another along a space-filling curve, in O(n): for scenes of which fewer rays are asked
+    /// than some two a triangle.
+    Fast,
+    /// Split by the surface area heuristic, in O(n log n).
+    #[default]
+    Balanced,
+}
+
 /// How to build a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildOptions {
@@ -135,6 +154,8 @@ pub struct BuildOptions {
     pub structure: Option<Structure>,
     /// Parts that are kept or left out whatever the plan says; of no effect where `structure` is given.
     pub forced: Forced,
+    /// How much work is put into the build; answers do not depend on it.
+    pub quality: Quality,
     /// The build fails rather than hold more than this many bytes for the finished structure.
     pub memory_limit: usize,
     /// The instruction set of the queries; answers do not depend on it.
@@ -149,6 +170,7 @@ impl Default for BuildOptions {
         Self {
             structure: None,
             forced: Forced::default(),
+            quality: Quality::default(),
             memory_limit: 16 << 30,
             isa: Isa::detect(),
             walk: Walk::Special,

@@ -4,7 +4,8 @@ use super::compare::{self, Subject};
 use super::disagreement::Disagreement;
 use super::{brute, exact};
 use crate::build::{
-    BuildOptions, Forced, HybridParams, OctreeParams, Part, RecursiveParams, Structure, UniformParams,
+    BuildOptions, Forced, HybridParams, OctreeParams, Part, Quality, RecursiveParams, Structure,
+    UniformParams,
 };
 use crate::lanes::Isa;
 use crate::mesh::TriMesh;
@@ -53,8 +54,8 @@ impl Agreement {
         }
     }
 
-    /// Every structure with default and with extreme parameters, plans with every part forced on and off, every
-    /// instruction set, one and two threads, all rays against exact arithmetic, some of them decorated.
+    /// Every structure with default and with extreme parameters, plans with every part forced on and off and of
+    /// every quality, every instruction set, one and two threads, all rays against exact arithmetic, some of them decorated.
     pub fn thorough() -> Self {
         let structures = Structure::ALL.into_iter().chain(variants()).map(BuildOptions::from);
         let structures = structures.chain(plans()).collect();
@@ -203,7 +204,7 @@ fn build(mesh: &TriMesh<'_>, options: &BuildOptions) -> Result<Scene, Box<Disagr
     })
 }
 
-/// Plans with each part forced on and off.
+/// Plans with each part forced on and off, and of the other quality.
 fn plans() -> impl Iterator<Item = BuildOptions> {
     let forced = |keep: [Option<bool>; 3]| {
         let parts = Part::ALL.into_iter().zip(keep).filter_map(|(part, keep)| Some((part, keep?)));
@@ -213,6 +214,7 @@ fn plans() -> impl Iterator<Item = BuildOptions> {
     [[None; 3], [on, on, on], [on, off, off], [off, None, None]]
         .into_iter()
         .map(move |keep| BuildOptions { forced: forced(keep), ..Default::default() })
+        .chain([BuildOptions { quality: Quality::Fast, ..Default::default() }])
 }
 
 /// Parameters away from the defaults: the paper's, no top grid, no depth, much depth.

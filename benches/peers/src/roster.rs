@@ -37,6 +37,8 @@ pub(crate) fn all() -> Vec<Contender> {
         with("octogrid-batch", octogrid(None, Calls::Batch), true),
         with("octogrid-packet16", octogrid(None, Calls::Packets16), true),
         with("octogrid-stream", octogrid(None, Calls::Stream), true),
+        with("octogrid-fast", fast(Calls::Single), true),
+        with("octogrid-fast-stream", fast(Calls::Stream), true),
         with("octogrid-octree", octogrid(Some(Structure::OCTREE), Calls::Single), true),
         with("octogrid-uniform", octogrid(Some(Structure::UNIFORM), Calls::Single), false),
         with("octogrid-recursive", octogrid(Some(Structure::RECURSIVE), Calls::Single), false),
@@ -65,6 +67,14 @@ pub(crate) fn all() -> Vec<Contender> {
 /// Of the structure, or of that of the plan.
 fn octogrid(structure: Option<Structure>, calls: Calls) -> Box<dyn Tracer> {
     Box::new(Octogrid { options: BuildOptions { structure, ..Default::default() }, calls })
+}
+
+/// Built fast.
+fn fast(calls: Calls) -> Box<dyn Tracer> {
+    Box::new(Octogrid {
+        options: BuildOptions { quality: octogrid::Quality::Fast, ..Default::default() },
+        calls,
+    })
 }
 
 fn embree(quality: Quality, robust: bool, calls: embree::Calls) -> Box<dyn Tracer> {

@@ -105,7 +105,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let options = args.build.options(args.structure)?;
     let is_built = saved::is_named(Path::new(&args.scene));
     if is_built && !(args.structure == Choice::Auto && args.build.is_empty()) {
-        let why = "is built already: leave --structure, --params and --memory-limit to octogrid build";
+        let why =
+            "is built already: leave --structure, --params, --quality and --memory-limit to octogrid build";
         return Err(Failure::Usage(format!("{} {why}", args.scene)));
     }
     let output = Output::at(&args.hits)?;

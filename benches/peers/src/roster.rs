@@ -31,17 +31,19 @@ impl Contender {
 
 /// Everything that can be measured.
 pub(crate) fn all() -> Vec<Contender> {
+    let plan = BuildOptions::default();
+    let fast = BuildOptions { quality: octogrid::Quality::Fast, ..plan };
     let with = |name, tracer, usual| Contender { name, tracer, usual };
     vec![
-        with("octogrid", octogrid(None, Calls::Single), true),
-        with("octogrid-batch", octogrid(None, Calls::Batch), true),
-        with("octogrid-packet16", octogrid(None, Calls::Packets16), true),
-        with("octogrid-stream", octogrid(None, Calls::Stream), true),
-        with("octogrid-fast", fast(Calls::Single), true),
-        with("octogrid-fast-stream", fast(Calls::Stream), true),
-        with("octogrid-octree", octogrid(Some(Structure::OCTREE), Calls::Single), true),
-        with("octogrid-uniform", octogrid(Some(Structure::UNIFORM), Calls::Single), false),
-        with("octogrid-recursive", octogrid(Some(Structure::RECURSIVE), Calls::Single), false),
+        with("octogrid", octogrid(plan, Calls::Single), true),
+        with("octogrid-batch", octogrid(plan, Calls::Batch), true),
+        with("octogrid-packet16", octogrid(plan, Calls::Packets16), true),
+        with("octogrid-stream", octogrid(plan, Calls::Stream), true),
+        with("octogrid-fast", octogrid(fast, Calls::Single), true),
+        with("octogrid-fast-stream", octogrid(fast, Calls::Stream), true),
+        with("octogrid-octree", octogrid(Structure::OCTREE.into(), Calls::Single), true),
+        with("octogrid-uniform", octogrid(Structure::UNIFORM.into(), Calls::Single), false),
+        with("octogrid-recursive", octogrid(Structure::RECURSIVE.into(), Calls::Single), false),
         with("embree-low", embree(Quality::Low, false, embree::Calls::Single), true),
         with("embree-med", embree(Quality::Medium, false, embree::Calls::Single), true),
         with("embree-high", embree(Quality::High, false, embree::Calls::Single), true),
@@ -64,17 +66,8 @@ pub(crate) fn all() -> Vec<Contender> {
     ]
 }
 
-/// Of the structure, or of that of the plan.
-fn octogrid(structure: Option<Structure>, calls: Calls) -> Box<dyn Tracer> {
-    Box::new(Octogrid { options: BuildOptions { structure, ..Default::default() }, calls })
-}
-
-/// Built fast.
-fn fast(calls: Calls) -> Box<dyn Tracer> {
-    Box::new(Octogrid {
-        options: BuildOptions { quality: octogrid::Quality::Fast, ..Default::default() },
-        calls,
-    })
+fn octogrid(options: BuildOptions, calls: Calls) -> Box<dyn Tracer> {
+    Box::new(Octogrid { options, calls })
 }
 
 fn embree(quality: Quality, robust: bool, calls: embree::Calls) -> Box<dyn Tracer> {

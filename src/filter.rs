@@ -17,6 +17,7 @@ pub(crate) struct RayLanes<L: Lanes> {
     /// 16 times the largest absolute component of the direction, or more.
     pub(crate) bound: L::F32,
     pub(crate) t_min: L::F32,
+    /// No less than what rounds to the end of the interval, but for a part of 2^-24.
     pub(crate) t_max: L::F32,
 }
 
@@ -36,7 +37,7 @@ impl<L: Lanes> RayLanes<L> {
             dir: splat(lanes, ray.dir),
             bound: lanes.splat(16.0 * steepest(ray.dir)),
             t_min: lanes.splat(ray.t_min),
-            t_max: lanes.splat(ray.t_max),
+            t_max: lanes.splat(rounds_to(ray.t_max)),
         }
     }
 
@@ -59,7 +60,7 @@ impl<L: Lanes> RayLanes<L> {
             dir,
             bound: lanes.splat(16.0) * size(lanes, dir),
             t_min: load(&packet.t_min),
-            t_max: load(&packet.t_max),
+            t_max: load(&packet.t_max) + lanes.splat(f32::MIN_POSITIVE),
         }
     }
 }
@@ -141,16 +142,16 @@ impl Scale {
         Ray { dir, t_min, t_max: self.time(ray.t_max), ..*ray }
     }
 
-    /// t in units of the scaled direction, or an ulp or two more; what is finite stays so.
+    /// [`RayLanes::t_max`] for t: in units of the scaled direction, or an ulp or two more; what is finite stays so.
     #[inline(always)]
     pub(crate) fn time(self, t: f32) -> f32 {
-        if self.factor == 1.0 { t } else { self.scaled_time(t) }
+        if self.factor == 1.0 { rounds_to(t) } else { self.scaled_time(t) }
     }
 
     #[cold]
     #[inline(never)]
     fn scaled_time(self, t: f32) -> f32 {
-        let above = above(f64::from(t) * self.inverse);
+        let above = above((f64::from(t) + HALF_LEAST) * self.inverse);
         if t.is_finite() { above.clamp(f32::MIN, f32::MAX) } else { t }
     }
 
@@ -166,6 +167,16 @@ impl Scale {
         (f64::from(t) * self.factor) as f32
     }
 }
+
+/// No less than what rounds to t, but for a part of 2^-24, which [`candidates`]' bounds cover; never subnormal, which
+/// is slow to multiply by.
+#[inline(always)]
+fn rounds_to(t: f32) -> f32 {
+    t + f32::MIN_POSITIVE
+}
+
+/// By how much what rounds to a subnormal t may be more.
+const HALF_LEAST: f64 = 0.5 * f32::from_bits(1) as f64;
 
 /// No less than `x`, and an ulp or two more at most.
 #[inline(always)]

@@ -12,7 +12,7 @@ use octogrid::oracle::hazards::{CLOSED, HAZARDS, Hazard, HazardScene, SceneKind}
 use octogrid::oracle::meshes::Mesh;
 use octogrid::oracle::rays::{hazards, in_turn};
 use octogrid::oracle::watertight::{Leaks, Watertight};
-use octogrid::{BuildError, BuildOptions, Scene, Structure, TriMesh};
+use octogrid::{BuildError, BuildOptions, Ray, Scene, Structure, TriMesh};
 
 /// More bytes a triangle than any structure with default parameters takes on any scene here; small scenes
 /// may take as many as 1,000 triangles.
@@ -41,6 +41,30 @@ fn hazards_are_harmless() {
                 }
             }
         }
+    }
+}
+
+/// Exact distances which round to an end of the interval but are far from it in units of a long direction or beside
+/// a large triangle, from origins so near its corner that bounds of errors are small; packets of rays that go alike.
+#[test]
+fn least_distances_round_to_the_ends_of_intervals() {
+    const LEAST: f64 = f32::from_bits(1) as f64;
+    let [one, two] = [1, 2].map(f32::from_bits);
+    let ends = [(f32::NEG_INFINITY, -0.0), (-one, 0.0), (0.0, one), (one, two), (-0.0, 1.0)];
+    let mut rays = Vec::new();
+    for length in [1.0, 4.0, 31.0, 34.0, 39.0, 41.0, 80.0, 99.0, 127.0].map(f64::exp2) {
+        let near = (LEAST * length) as f32;
+        for distance in [-1.5, -0.5, 0.25, 0.5, 0.75, 1.5, 2.25] {
+            for i in 0..64 {
+                let ray = Ray::new([near * i as f32, near * -distance, near], [0.0, length as f32, 0.0]);
+                let (t_min, t_max) = ends[i % ends.len()];
+                rays.push(ray.with_interval(t_min, t_max));
+            }
+        }
+    }
+    for size in [4.0, 1e18] {
+        let mesh = (vec![[0.0; 3], [size, 0.0, 0.0], [0.0, 0.0, size]], vec![[0, 1, 2]]);
+        Agreement { exact: rays.len(), ..Agreement::quick() }.assert(&sound(&mesh), &rays);
     }
 }
 

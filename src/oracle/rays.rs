@@ -35,7 +35,7 @@ pub enum RaySet {
     Sliver,
     /// From 10^6 and 10^18 times the size away.
     Far,
-    /// With directions from subnormal to 10^30 long.
+    /// With directions from subnormal to 10^38 long, some with an end of the interval at a hit.
     Scaled,
     /// With ends of the interval on a surface, next to it, negative and infinite.
     Interval,
@@ -235,13 +235,37 @@ fn far(source: &mut Source<'_>) -> Ray {
 }
 
 fn scaled(source: &mut Source<'_>) -> Ray {
-    let ray = if source.rng.below(2) == 0 { random(source) } else { aimed(source) };
+    match source.rng.below(3) {
+        0 => {
+            let ray = random(source);
+            stretched(source, ray)
+        }
+        1 => {
+            let ray = aimed(source);
+            stretched(source, ray)
+        }
+        _ => {
+            let (ray, corners) = at_triangle(source);
+            let ray = stretched(source, ray);
+            ending_at(source, ray, corners)
+        }
+    }
+}
+
+/// With a direction of another length.
+fn stretched(source: &mut Source<'_>, ray: Ray) -> Ray {
     let length = source.rng.pick(&[1e-44, 1e-42, 1e-38, 1e-30, 1e-10, 1e10, 1e30, 1e38]);
     let dir = ray.dir.as_dvec3().normalize_or_zero() * length;
     Ray { dir: narrow(dir), ..ray }
 }
 
 fn interval(source: &mut Source<'_>) -> Ray {
+    let (ray, corners) = at_triangle(source);
+    ending_at(source, ray, corners)
+}
+
+/// A ray and a triangle that it mostly meets.
+fn at_triangle(source: &mut Source<'_>) -> (Ray, [Vec3; 3]) {
     let corners = source.corners();
     let target = corners.iter().map(|v| v.as_dvec3()).sum::<DVec3>() / 3.0;
     let ray = match source.rng.below(3) {
@@ -249,6 +273,11 @@ fn interval(source: &mut Source<'_>) -> Ray {
         1 => towards(source.inside(), target),
         _ => towards(source.around(1.5), target),
     };
+    (ray, corners)
+}
+
+/// The ray with an end of its interval where it meets the triangle, or next to that.
+fn ending_at(source: &mut Source<'_>, ray: Ray, corners: [Vec3; 3]) -> Ray {
     let on = exact::intersect(&ray, corners, EdgeRule::Closed).map_or(1.0, |hit| hit.t);
     let t = source.rng.pick(&[on, on.next_up(), on.next_down()]);
     match source.rng.below(6) {

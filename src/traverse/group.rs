@@ -28,9 +28,14 @@ pub(crate) const PACKETS: usize = GROUP / WIDTH;
 /// Slopes above this make no group.
 const STEEPEST: f64 = 3.0;
 
-/// Directions whose largest component is beyond 2 to the power of this, or below its inverse, make no group: so t is
-/// scaled without rounding.
-pub(crate) const LONGEST: i32 = 100;
+/// Between 2 to the power of minus this and its inverse t is scaled without rounding: other hits are decided at once,
+/// and directions whose largest component is below make no group.
+pub(crate) const EXPONENT: i32 = 100;
+
+/// Directions whose largest component is beyond 2 to the power of this make no group, nor those that cross 2^100 cells
+/// a unit of t: half the least f32, by which t is rounded at least, stays small in units of the scaled direction, and
+/// in cells.
+const FASTEST: i32 = 40;
 
 /// More than the rounding errors of a place along the main axis, in sizes S of the grid.
 pub(crate) const SLACK: f64 = 1.0 / (1u64 << 20) as f64;
@@ -208,7 +213,8 @@ impl<'a> Group<'a> {
         out.speed = lanes.store8(speed);
         let load = |x: &[f32; WIDTH]| lanes.abs(lanes.load(x));
         let largest = lanes.max(lanes.max(load(&out.dir[0]), load(&out.dir[1])), load(&out.dir[2]));
-        let (short, long) = (lanes.splat(2f32.powi(-LONGEST)), lanes.splat(2f32.powi(LONGEST)));
+        let fastest = 2f64.powi(FASTEST).min(2f64.powi(100) * grid.cell) as f32;
+        let (short, long) = (lanes.splat(2f32.powi(-EXPONENT)), lanes.splat(fastest));
         fit &= lanes.bits(lanes.less(short, largest) & lanes.less(largest, long));
         let largest = lanes.store(largest);
         for lane in 0..WIDTH {
@@ -286,10 +292,11 @@ fn reach<L: Doubles>(lanes: L, start: L::F64x8, way: L::F64x8, rises: bool) -> L
 /// More than half a unit in the last place of an f32, relative to it.
 const HALF_ULP: f64 = 1.0 / (1u64 << 23) as f64;
 
-/// No less than `x`, and an ulp or two more at most; finite where `x` is below the largest f32.
+/// No less than `x`, in units of scaled directions, nor than what rounds to it as a t, and an ulp or two and 2^-109 more
+/// at most; finite where `x` is below the largest f32.
 #[inline(always)]
 fn above<L: Doubles>(lanes: L, x: L::F64x8) -> L::F32 {
     const ULP: f64 = f32::EPSILON as f64;
-    const LEAST: f64 = f32::from_bits(1) as f64;
+    const LEAST: f64 = f32::from_bits(1) as f64 * (1u64 << FASTEST) as f64;
     lanes.narrow(x + (lanes.abs8(x) * lanes.splat8(ULP) + lanes.splat8(LEAST)))
 }

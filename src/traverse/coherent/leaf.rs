@@ -19,7 +19,7 @@ use crate::filter::{Certain, RayLanes, products};
 use crate::lanes::{Doubles, Lanes, WIDTH};
 use crate::prepared::Prepared;
 use crate::query::{EdgeRule, Query, Wanted};
-use crate::traverse::group::{LONGEST, SCALED};
+use crate::traverse::group::{EXPONENT, SCALED};
 use crate::traverse::nearest::Source;
 use crate::triangle::intersect;
 
@@ -283,8 +283,8 @@ impl<L: Lanes> Unscaled<L> {
     #[inline(always)]
     fn new(lanes: L, certain: &Certain<L>, unit: L::F32, after: L::F32) -> Self {
         let (low, high) = (certain.low * unit, certain.high * unit);
-        let within = lanes.less(lanes.max(after, lanes.splat(2f32.powi(-LONGEST))), low)
-            & lanes.less(high, lanes.splat(2f32.powi(LONGEST)));
+        let within = lanes.less(lanes.max(after, lanes.splat(2f32.powi(-EXPONENT))), low)
+            & lanes.less(high, lanes.splat(2f32.powi(EXPONENT)));
         Self { lanes: certain.lanes & lanes.bits(within), low, high }
     }
 }

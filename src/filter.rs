@@ -133,7 +133,7 @@ impl Scale {
         Self { factor: power(-exponent), inverse: power(exponent) }
     }
 
-    /// The scaled ray. The interval grows by an ulp or two; what is finite stays so.
+    /// The scaled ray. The interval grows by an ulp or two, and has no end beyond the largest f32.
     #[inline(always)]
     fn scaled(self, ray: &Ray) -> Ray {
         let dir = (ray.dir.as_dvec3() * self.factor).as_vec3();
@@ -142,7 +142,8 @@ impl Scale {
         Ray { dir, t_min, t_max: self.time(ray.t_max), ..*ray }
     }
 
-    /// [`RayLanes::t_max`] for t: in units of the scaled direction, or an ulp or two more; what is finite stays so.
+    /// [`RayLanes::t_max`] for t: in units of the scaled direction, or an ulp or two more, and so infinity beyond
+    /// the largest f32.
     #[inline(always)]
     pub(crate) fn time(self, t: f32) -> f32 {
         if self.factor == 1.0 { rounds_to(t) } else { self.scaled_time(t) }
@@ -152,7 +153,7 @@ impl Scale {
     #[inline(never)]
     fn scaled_time(self, t: f32) -> f32 {
         let above = above((f64::from(t) + HALF_LEAST) * self.inverse);
-        if t.is_finite() { above.clamp(f32::MIN, f32::MAX) } else { t }
+        if t.is_finite() { above.max(f32::MIN) } else { t }
     }
 
     /// Whether nothing is scaled.
@@ -341,7 +342,8 @@ mod tests {
         let scale = Scale::of(Vec3::new(1e-30, 0.0, 0.0));
         assert_eq!(scale.time(f32::INFINITY), f32::INFINITY);
         assert!(scale.time(1e38) <= 1e9);
-        assert_eq!(Scale::of(Vec3::new(1e30, 0.0, 0.0)).time(1e38), f32::MAX);
+        assert_eq!(Scale::of(Vec3::new(1e30, 0.0, 0.0)).time(1e38), f32::INFINITY);
+        assert_eq!(Scale::of(Vec3::new(1e30, 0.0, 0.0)).time(-1e38), f32::MIN);
     }
 
     /// Deterministic values of very different size, with many repeats and zeros.

@@ -6,12 +6,12 @@ mod common;
 
 use std::thread;
 
-use octogrid::oracle::Agreement;
 use octogrid::oracle::extremes::{crowd, identical, moved, turned};
 use octogrid::oracle::hazards::{CLOSED, HAZARDS, Hazard, HazardScene, SceneKind};
 use octogrid::oracle::meshes::Mesh;
 use octogrid::oracle::rays::{hazards, in_turn};
 use octogrid::oracle::watertight::{Leaks, Watertight};
+use octogrid::oracle::{Agreement, assert_agree, exact};
 use octogrid::{BuildError, BuildOptions, Ray, Scene, Structure, TriMesh};
 
 /// More bytes a triangle than any structure with default parameters takes on any scene here; small scenes
@@ -66,6 +66,16 @@ fn least_distances_round_to_the_ends_of_intervals() {
         let mesh = (vec![[0.0; 3], [size, 0.0, 0.0], [0.0, 0.0, size]], vec![[0, 1, 2]]);
         Agreement { exact: rays.len(), ..Agreement::quick() }.assert(&sound(&mesh), &rays);
     }
+}
+
+/// An end of an interval that is beyond the largest f32 in units of the scaled direction.
+#[test]
+fn long_directions_from_far_away_end_at_hits() {
+    let mesh = (vec![[0.0; 3], [0.02, 0.0, 0.0], [0.0, 0.02, 0.01]], vec![[0, 1, 2]; 2]);
+    let from = Ray::new([0.001, f32::MAX, f32::MAX], [0.0, -(2f32.powi(125)), -(2f32.powi(125))]);
+    let rays = [-1.0, 7.0, 8f32.next_down(), 8.0, f32::MAX].map(|t_max| from.with_interval(-2.0, t_max));
+    assert_agree(&sound(&mesh), &rays);
+    assert!(exact::any(&sound(&mesh), &rays[3]));
 }
 
 fn build(mesh: &TriMesh<'_>, structure: Structure, memory_limit: usize) -> Result<Scene, BuildError> {

@@ -211,10 +211,10 @@ fn the_plan_is_measured_against_everything() {
     };
     let structures = ["uniform", "recursive", "octree", "hybrid"];
     let cube = [&["plan", "all parts", "voxels on"], &structures[..], &["brute"]].concat();
-    let torus = [&["plan", "all parts", "fine-grid off", "bricks on"], &structures[..]].concat();
+    let torus = [&["plan", "all parts", "fast", "fine-grid off", "bricks on"], &structures[..]].concat();
     assert_eq!(scenes.iter().map(variants).collect::<Vec<_>>(), [cube, torus]);
     let csv = std::fs::read_to_string(folder.path("p/report.csv")).unwrap();
-    assert_eq!(csv.lines().count(), 1 + 8 + 8);
+    assert_eq!(csv.lines().count(), 1 + 8 + 9);
     svg_holds(&folder, "p/savings.svg", &["cube", "torus", "bytes", "% saved"]);
     let run = folder.run(&["report", "plan", "cube", "--count", "voxels"]);
     assert!(run.code == Some(2) && run.stderr.contains("no variant 'voxels'"), "{}", run.stderr);

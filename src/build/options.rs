@@ -140,11 +140,25 @@ impl fmt::Display for Structure {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Quality {
     /// Triangles that follow one another along a space-filling curve, in O(n): for scenes of which fewer rays are asked
-    /// than some two a triangle.
+    /// than some two a triangle ([`Quality::for_rays`]).
     Fast,
     /// Split by the surface area heuristic, in O(n log n).
     #[default]
     Balanced,
+}
+
+impl Quality {
+    /// What takes the shorter time for a build and so many rays of a scene, whose structures are built and whose rays
+    /// are traced on as many threads: two rays a triangle decide, see ARCHITECTURE.md.
+    ///
+    /// ```
+    /// use octogrid::Quality;
+    /// assert_eq!(Quality::for_rays(100_000, 1_000_000), Quality::Fast);
+    /// assert_eq!(Quality::for_rays(1_000_000, 100_000), Quality::Balanced);
+    /// ```
+    pub const fn for_rays(rays: u64, triangles: usize) -> Self {
+        if rays / 2 < triangles as u64 { Self::Fast } else { Self::Balanced }
+    }
 }
 
 /// How to build a scene.

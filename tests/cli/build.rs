@@ -86,6 +86,8 @@ fn files_that_do_not_fit_are_refused() {
         ("render quads.obj --accel quads.ogrid --structure octree -o out", 2, "--structure"),
         ("trace quads.ogrid --structure octree --rays rays.npy --query any --hits out", 2, "built already"),
         ("trace quads.ogrid --memory-limit 1G --rays rays.npy --query any --hits out", 2, "built already"),
+        ("trace quads.ogrid --quality balanced --rays rays.npy --query any --hits out", 2, "built already"),
+        ("render quads.obj --accel quads.ogrid --quality fast -o out", 2, "--quality"),
         ("build quads.obj -o out", 2, ".ogrid"),
         ("build quads.obj -o missing/out.ogrid", 1, "the folder does not exist"),
         ("build nowhere -o out.ogrid", 1, "interior"),

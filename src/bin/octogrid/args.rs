@@ -1,7 +1,7 @@
 //! Arguments that several commands share.
 
 use clap::ValueEnum;
-use octogrid::{BuildOptions, Forced, Part, Quality, Structure};
+use octogrid::{BuildOptions, Forced, Model, Part, Quality, Structure};
 
 use crate::failure::Failure;
 use crate::params::{self, Param};
@@ -40,6 +40,8 @@ impl Choice {
 /// The values of `--quality`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum QualityChoice {
+    /// Fast where fewer than two rays a triangle are known to be asked, else balanced
+    Auto,
     /// Built in some 0.6 of the time; rays take some 1.15 of it
     Fast,
     /// For more rays than a few a triangle
@@ -56,7 +58,7 @@ pub(crate) struct BuildArgs {
     #[arg(long, value_name = "PART=on|off", value_delimiter = ',', value_parser = parse_force)]
     force: Vec<(Part, bool)>,
     /// How much work is put into the build
-    #[arg(long, value_name = "QUALITY", default_value = "balanced")]
+    #[arg(long, value_name = "QUALITY", default_value = "auto")]
     quality: QualityChoice,
     /// The most bytes that the structure may hold; K, M and G multiply by 1024
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
@@ -68,7 +70,7 @@ impl BuildArgs {
     pub(crate) fn is_empty(&self) -> bool {
         self.params.is_empty()
             && self.force.is_empty()
-            && self.quality == QualityChoice::Balanced
+            && self.quality == QualityChoice::Auto
             && self.memory_limit.is_none()
     }
 
@@ -95,13 +97,20 @@ impl BuildArgs {
         Ok(BuildOptions {
             structure,
             forced: self.forced(),
-            quality: match self.quality {
-                QualityChoice::Fast => Quality::Fast,
-                QualityChoice::Balanced => Quality::Balanced,
-            },
+            quality: if self.quality == QualityChoice::Fast { Quality::Fast } else { Quality::Balanced },
             memory_limit: self.memory_limit.unwrap_or(default.memory_limit),
             ..default
         })
+    }
+
+    /// The same where at least so many rays will be asked of a model.
+    pub(crate) fn for_rays(&self, options: &BuildOptions, rays: usize, model: &Model) -> BuildOptions {
+        match self.quality {
+            QualityChoice::Auto => {
+                BuildOptions { quality: Quality::for_rays(rays as u64, model.triangles.len()), ..*options }
+            }
+            QualityChoice::Fast | QualityChoice::Balanced => *options,
+        }
     }
 
     /// The parts that are forced.

@@ -38,7 +38,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     build: BuildArgs,
     /// The structure of the scene from octogrid build, in place of building it
-    #[arg(long, value_name = "FILE.ogrid", conflicts_with_all = ["structure", "params", "force", "memory_limit"])]
+    #[arg(long, value_name = "FILE.ogrid", conflicts_with_all = ["structure", "params", "force", "quality", "memory_limit"])]
     accel: Option<PathBuf>,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "800x600", value_parser = parse_size)]
@@ -99,7 +99,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             Some(path) => {
                 saved::load_for(path, &loaded.model).map(|(scene, ms)| (scene, ("load, ms", ms)))?
             }
-            None => load::build(&loaded.model, &options).map(|(scene, ms)| (scene, ("build, ms", ms)))?,
+            None => {
+                let options = args.build.for_rays(&options, least_rays(args), &loaded.model);
+                load::build(&loaded.model, &options).map(|(scene, ms)| (scene, ("build, ms", ms)))?
+            }
         };
         let camera = camera(args, &loaded, &scene)?;
         let shading = Shading::new(&loaded.model, &scene, up(args.up));
@@ -111,6 +114,16 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     picture.write_to(&mut png, ImageFormat::Png).map_err(|e| Failure::at(&args.output, e))?;
     output.write(|file| std::io::Write::write_all(file, png.get_ref()))?;
     say(summary)
+}
+
+/// At least how many rays a picture takes: one through each pixel or sample, and another from most of what these meet.
+fn least_rays(args: &Args) -> usize {
+    let pixels = args.size.map(|n| n as usize).iter().product::<usize>();
+    match (args.view, args.integrator.integrator) {
+        (View::Shaded, Integrator::Direct) => 2 * pixels,
+        (View::Shaded, _) => 2 * pixels * args.integrator.samples as usize,
+        _ => pixels,
+    }
 }
 
 fn up(up: Up) -> DVec3 {

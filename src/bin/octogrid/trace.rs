@@ -114,7 +114,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let rays = read_rays(&args.rays)?;
     let (report, answer) = args.threads.run(|| {
         let ready = match &model {
-            Some(model) => Ready::build(model, &options)?,
+            Some(model) => {
+                let asked = rays.len() * args.repeat as usize;
+                Ready::build(model, &args.build.for_rays(&options, asked, model))?
+            }
             None => Ready::load(Path::new(&args.scene))?,
         };
         let (answer, seconds) = ask(&ready.scene, &rays, args.query, args.repeat);

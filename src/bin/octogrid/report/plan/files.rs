@@ -36,7 +36,7 @@ pub(super) fn tables(report: &Report) -> String {
     format!(
         "The plan relative to all parts (below 1 it saves):\n{}\n\n\
          The plan relative to one part the other way round, geometric means:\n{}\n\n\
-         Time to an image, build and rays of three kinds, relative to the best structure:\n{}",
+         Time to an image, build and rays of three kinds, relative to the best structure and quality:\n{}",
         whole(report),
         parts(report),
         choices(report)
@@ -149,7 +149,7 @@ mod tests {
     #[test]
     fn no_scenes_are_no_failure() {
         let report = Report { machine: Machine::here(), rays: 1, rounds: 1, scenes: Vec::new() };
-        assert!(tables(&report).contains("best structure"));
+        assert!(tables(&report).contains("best structure and quality"));
         assert_eq!(csv(&report.scenes).lines().count(), 1);
     }
 }

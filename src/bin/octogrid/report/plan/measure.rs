@@ -35,6 +35,7 @@ fn kind<S: Serializer>(kind: &Kind, serializer: S) -> Result<S::Ok, S::Error> {
         Kind::Plan => "plan",
         Kind::All => "all",
         Kind::Flipped(..) => "part",
+        Kind::Fast => "fast",
         Kind::Structure => "structure",
     })
 }

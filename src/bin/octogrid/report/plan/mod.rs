@@ -24,7 +24,7 @@ use crate::{pool, table};
 
 /// Measure what leaving out saves, and whether the plan's choice is the best
 ///
-/// Builds each scene as its plan says, with all parts, with each part the other way round, and as every
+/// Builds each scene as its plan says, fast, with all parts, with each part the other way round, and as every
 /// structure with default parameters, and traces rays of an image: from the camera, to the lights, and from
 /// where they meet the scene any way. All in turns on one thread. Instructions are counted under valgrind,
 /// where there is one; else the tables show cluster tests and cache lines. Writes report.json, report.csv and

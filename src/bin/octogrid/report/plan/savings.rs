@@ -1,6 +1,9 @@
 //! Ratios of the plan to what it is compared with.
 
+use octogrid::Quality;
+
 use super::measure::Point;
+use super::rays::KINDS;
 use super::variants::Kind;
 
 /// Rays of each kind in an image.
@@ -64,10 +67,16 @@ pub(super) fn against(scenes: &[Vec<Point>], kind: Kind) -> Vec<(&Point, Ratios)
     scenes.iter().filter_map(|points| Some((plan(points), of(points)?))).collect()
 }
 
-/// The structure with the shortest time to an image, and the plan's time relative to it.
+/// The structure and quality with the shortest time to an image, and relative to it the time of the plan in the
+/// quality for so many rays.
 pub(super) fn best(points: &[Point], rays: f64) -> (&Point, f64) {
-    let structures = points.iter().filter(|point| matches!(point.kind, Kind::Structure | Kind::Plan));
-    let best = structures.min_by(|a, b| a.image_ms(rays).total_cmp(&b.image_ms(rays)));
+    let choices = points.iter().filter(|p| matches!(p.kind, Kind::Structure | Kind::Plan | Kind::Fast));
+    let best = choices.min_by(|a, b| a.image_ms(rays).total_cmp(&b.image_ms(rays)));
+    let plan = plan(points);
+    let auto = match Quality::for_rays((KINDS.len() as f64 * rays) as u64, plan.triangles) {
+        Quality::Fast => points.iter().find(|point| point.kind == Kind::Fast).unwrap_or(plan),
+        Quality::Balanced => plan,
+    };
     let best = best.expect("each scene has a plan");
-    (best, plan(points).image_ms(rays) / best.image_ms(rays))
+    (best, auto.image_ms(rays) / best.image_ms(rays))
 }

@@ -1,6 +1,6 @@
 //! What is built of a scene to be compared.
 
-use octogrid::{BuildOptions, Forced, Part, Plan, SceneProfile, Structure};
+use octogrid::{BuildOptions, Forced, Part, Plan, Quality, SceneProfile, Structure};
 
 /// The most triangles that are traced without voxels: it takes as long as there are triangles.
 const BRUTE: usize = 512;
@@ -20,10 +20,12 @@ pub(super) enum Kind {
     All,
     /// A part, kept though the plan leaves it out (`true`), or the other way round.
     Flipped(Part, bool),
+    /// Built fast.
+    Fast,
     Structure,
 }
 
-/// The plan, all parts, the plan with each part that matters the other way round, and every structure.
+/// The plan, all parts, the plan built fast, the plan with each part that matters the other way round, and every structure.
 pub(super) fn variants(profile: &SceneProfile) -> Vec<Variant> {
     let plan = Plan::new(profile, Forced::default());
     let planned = |name: String, forced, kind| Variant {
@@ -35,6 +37,11 @@ pub(super) fn variants(profile: &SceneProfile) -> Vec<Variant> {
         planned("plan".to_owned(), Forced::default(), Kind::Plan),
         planned("all parts".to_owned(), Forced::all(true), Kind::All),
     ];
+    // Without voxels there is one way to build.
+    if plan.keeps(Part::Voxels) {
+        let options = BuildOptions { quality: Quality::Fast, ..Default::default() };
+        variants.push(Variant { name: "fast".to_owned(), options, kind: Kind::Fast });
+    }
     let small = profile.triangles <= BRUTE;
     for part in Part::ALL {
         let keep = !plan.keeps(part);

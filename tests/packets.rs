@@ -54,6 +54,19 @@ fn intervals_that_end_at_a_hit() {
     }
 }
 
+/// Pictures whose rows are taken in tiles, of which the last ones are cut off.
+#[test]
+fn rows_of_a_camera() {
+    for (seed, kind) in (0..).zip(MeshKind::ALL) {
+        let (vertices, triangles) = random_mesh(seed, kind);
+        let mesh = TriMesh::new(&vertices, &triangles).unwrap();
+        let rays = RaySet::Camera.rays(&mesh, seed, 37 * 37);
+        for part in [&rays[..], &rays[100..1100]] {
+            Agreement { exact: 0, decorated: 0, threads: vec![2], ..Agreement::quick() }.assert(&mesh, part);
+        }
+    }
+}
+
 #[test]
 fn every_instruction_set() {
     let (vertices, triangles) = random_mesh(5, MeshKind::ALL[0]);

@@ -3,6 +3,7 @@
 //! Answers come in the order of the rays and are the same for any number of threads.
 
 mod gather;
+mod rows;
 mod trace;
 
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::gather::Gather;
+use super::rows::{self, TILE};
 use crate::arena::Form;
 use crate::hit::Hit;
 use crate::lanes::{WIDTH, dispatch};
@@ -13,6 +14,9 @@ use crate::traverse::{self, FEWEST, GROUP, Group, Outcome, PACKETS, Packet, PerR
 
 /// Rays a task.
 const CHUNK: usize = 4096;
+
+/// Rays in rows that are copied into the order of tiles at a time.
+const TILED: usize = 1024;
 
 /// Rays after which it is judged whether gathering pays.
 const BLOCK: usize = 256;
@@ -29,15 +33,14 @@ const MOST_OPENED: usize = 16;
 impl Scene {
     /// [`Scene::closest`] of each ray, with rays that go alike traced together.
     ///
-    /// Rays may come in any order, and neighbours that go alike are found in it.
+    /// Rays may come in any order: neighbours that go alike are found in it, and rays of a camera's pixels row by
+    /// row, which are taken in tiles.
     ///
     /// # Panics
     /// Where the slices differ in length.
     pub fn closest_stream(&self, rays: &[Ray], hits: &mut [Hit]) {
         assert_eq!(rays.len(), hits.len(), "one hit a ray");
-        rays.par_chunks(CHUNK)
-            .zip(hits.par_chunks_mut(CHUNK))
-            .for_each(|(rays, hits)| stream::<Closest>(self, rays, hits));
+        parallel::<Closest>(self, rays, hits);
     }
 
     /// [`Scene::occluded`] of each ray, as [`Scene::closest_stream`] does it.
@@ -46,9 +49,7 @@ impl Scene {
     /// Where the slices differ in length.
     pub fn occluded_stream(&self, rays: &[Ray], occluded: &mut [bool]) {
         assert_eq!(rays.len(), occluded.len(), "one answer a ray");
-        rays.par_chunks(CHUNK)
-            .zip(occluded.par_chunks_mut(CHUNK))
-            .for_each(|(rays, occluded)| stream::<Any>(self, rays, occluded));
+        parallel::<Any>(self, rays, occluded);
     }
 }
 
@@ -192,6 +193,41 @@ impl<Q: PerRay> Stream<'_, Q> {
         }
         (0..len).for_each(|i| self.answers[members[i] as usize] = answers[i]);
     }
+}
+
+/// Answers the rays, task by task.
+fn parallel<Q: PerRay>(scene: &Scene, rays: &[Ray], answers: &mut [Q::Answer]) {
+    let rows = if scene.arena.form == Form::Bricks { rows::width(rays) } else { None };
+    let task = rows.map_or(CHUNK, |width| {
+        let band = TILE * width;
+        band * (CHUNK / band).max(1)
+    });
+    rays.par_chunks(task).zip(answers.par_chunks_mut(task)).for_each(|(rays, answers)| match rows {
+        Some(width) => in_tiles::<Q>(scene, width, rays, answers),
+        None => stream::<Q>(scene, rays, answers),
+    });
+}
+
+/// Answers rays in rows of that width, in the order of tiles.
+fn in_tiles<Q: PerRay>(scene: &Scene, width: usize, rays: &[Ray], answers: &mut [Q::Answer]) {
+    let mut order = [0; TILED];
+    let (mut tiled, mut found) = ([rays[0]; TILED], [Q::up_to(0.0).answer(); TILED]);
+    let mut flush = |members: &[u32]| {
+        let (tiled, found) = (&mut tiled[..members.len()], &mut found[..members.len()]);
+        tiled.iter_mut().zip(members).for_each(|(ray, &i)| *ray = rays[i as usize]);
+        stream::<Q>(scene, tiled, found);
+        found.iter().zip(members).for_each(|(answer, &i)| answers[i as usize] = *answer);
+    };
+    let mut len = 0;
+    rows::tiles(rays.len(), width, |tile| {
+        if len + tile.len() > TILED {
+            flush(&order[..len]);
+            len = 0;
+        }
+        order[len..len + tile.len()].copy_from_slice(tile);
+        len += tile.len();
+    });
+    flush(&order[..len]);
 }
 
 fn stream<Q: PerRay>(scene: &Scene, rays: &[Ray], answers: &mut [Q::Answer]) {

@@ -98,9 +98,12 @@ pub(crate) fn samples(
     };
     Ok(match settings.integrator {
         Integrator::Direct => {
-            let mut light =
-                |surfaces: &[Surface], rates: &mut Rates| shading.light(surfaces, &mut rates.shadow);
-            image(BAND / shading.lights().max(1), rates, &mut light)
+            let most = (BAND / shading.lights().max(1)).max(1);
+            let mut light = |surfaces: &[Surface], rates: &mut Rates| {
+                let parts = surfaces.chunks(most);
+                parts.flat_map(|surfaces| shading.light(surfaces, &mut rates.shadow)).collect()
+            };
+            image(BAND / 4, rates, &mut light)
         }
         Integrator::Path => {
             let mut tracer = PathTracer::new(settings, shading, scene, emitters()?);

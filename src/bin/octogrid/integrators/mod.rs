@@ -98,6 +98,7 @@ pub(crate) fn samples(
     };
     Ok(match settings.integrator {
         Integrator::Direct => {
+            // Bands of many rows, which streams take in tiles, but fewer surfaces at once with all their lights.
             let most = (BAND / shading.lights().max(1)).max(1);
             let mut light = |surfaces: &[Surface], rates: &mut Rates| {
                 let parts = surfaces.chunks(most);

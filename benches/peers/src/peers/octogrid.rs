@@ -1,5 +1,7 @@
 //! octogrid, as its users call it.
 
+use std::sync::Mutex;
+
 use octogrid::{BuildOptions, Hit, Ray, RayPacket, Scene, TriMesh};
 
 use crate::peer::{Answer, Build, Peer, Tracer};
@@ -30,7 +32,10 @@ pub(crate) struct Octogrid {
 impl Tracer for Octogrid {
     fn prepare<'a>(&self, mesh: TriMesh<'a>, _: usize) -> Build<'a> {
         let Self { options, calls } = *self;
-        Box::new(move || Box::new(Built { scene: Scene::build(&mesh, &options).expect("it builds"), calls }))
+        Box::new(move || {
+            let scene = Scene::build(&mesh, &options).expect("it builds");
+            Box::new(Built { scene, calls, hits: Mutex::default() })
+        })
     }
 
     fn is_exact(&self) -> bool {
@@ -42,6 +47,8 @@ impl Tracer for Octogrid {
 pub(crate) struct Built {
     pub(crate) scene: Scene,
     pub(crate) calls: Calls,
+    /// Room for those of many rays, kept from call to call.
+    pub(crate) hits: Mutex<Vec<Hit>>,
 }
 
 impl Peer for Built {
@@ -52,9 +59,13 @@ impl Peer for Built {
                     .zip(answers)
                     .for_each(|(ray, answer)| *answer = answer_of(&self.scene.closest(ray)));
             }
-            Calls::Batch => {
-                let mut hits = vec![Hit::MISS; rays.len()];
-                self.scene.closest_batch(rays, &mut hits);
+            Calls::Batch | Calls::Stream => {
+                let mut hits = self.hits.lock().expect("no call panics");
+                hits.resize(rays.len(), Hit::MISS);
+                match self.calls {
+                    Calls::Stream => self.scene.closest_stream(rays, &mut hits),
+                    _ => self.scene.closest_batch(rays, &mut hits),
+                }
                 hits.iter().zip(answers).for_each(|(hit, answer)| *answer = answer_of(hit));
             }
             Calls::Packets16 => {
@@ -64,11 +75,6 @@ impl Peer for Built {
                         *answer = answer_of(&hits[i / 8].get(i % 8));
                     }
                 }
-            }
-            Calls::Stream => {
-                let mut hits = vec![Hit::MISS; rays.len()];
-                self.scene.closest_stream(rays, &mut hits);
-                hits.iter().zip(answers).for_each(|(hit, answer)| *answer = answer_of(hit));
             }
         }
     }

@@ -38,8 +38,7 @@ pub(crate) fn clusters(mesh: &TriMesh<'_>, analysis: &Analysis, quality: Quality
     let mut ends = vec![false; order.len()];
     arrange(boxes, &analysis.centers, &mut order, &mut ends, quality);
     if quality == Quality::Fast {
-        let chunks: Vec<&[u32]> = order.chunks(WIDTH).collect();
-        return parallel::map(&chunks, |chunk| gather(mesh, analysis, chunk));
+        return filled(mesh, analysis, &order);
     }
     let found = runs(&ends);
     parallel::for_each(parts(&mut order, &mut ends, &found), |(run, ends)| {
@@ -52,8 +51,13 @@ pub(crate) fn clusters(mesh: &TriMesh<'_>, analysis: &Analysis, quality: Quality
 
 /// Gathers the triangles of the analysis into as few clusters as there can be, in the order of the mesh.
 pub(crate) fn in_order(mesh: &TriMesh<'_>, analysis: &Analysis) -> Vec<Cluster> {
-    let order: Vec<u32> = (0..analysis.len() as u32).collect();
-    order.chunks(WIDTH).map(|run| gather(mesh, analysis, run)).collect()
+    filled(mesh, analysis, &(0..analysis.len() as u32).collect::<Vec<_>>())
+}
+
+/// Clusters of triangles that follow one another, all but the last one full.
+fn filled(mesh: &TriMesh<'_>, analysis: &Analysis, order: &[u32]) -> Vec<Cluster> {
+    let chunks: Vec<&[u32]> = order.chunks(WIDTH).collect();
+    parallel::map(&chunks, |chunk| gather(mesh, analysis, chunk))
 }
 
 /// From each of the `ends` to the next one.

@@ -55,7 +55,8 @@ impl Agreement {
     }
 
     /// Every structure with default and with extreme parameters, plans with every part forced on and off and of
-    /// every quality, every instruction set, one and two threads, all rays against exact arithmetic, some of them decorated.
+    /// every quality, every instruction set, one and two threads, all rays against exact arithmetic, some of them
+    /// decorated.
     pub fn thorough() -> Self {
         let structures = Structure::ALL.into_iter().chain(variants()).map(BuildOptions::from);
         let structures = structures.chain(plans()).collect();

@@ -235,28 +235,18 @@ fn far(source: &mut Source<'_>) -> Ray {
 }
 
 fn scaled(source: &mut Source<'_>) -> Ray {
-    match source.rng.below(3) {
-        0 => {
-            let ray = random(source);
-            stretched(source, ray)
-        }
-        1 => {
-            let ray = aimed(source);
-            stretched(source, ray)
-        }
+    let (ray, met) = match source.rng.below(3) {
+        0 => (random(source), None),
+        1 => (aimed(source), None),
         _ => {
             let (ray, corners) = at_triangle(source);
-            let ray = stretched(source, ray);
-            ending_at(source, ray, corners)
+            (ray, Some(corners))
         }
-    }
-}
-
-/// With a direction of another length.
-fn stretched(source: &mut Source<'_>, ray: Ray) -> Ray {
+    };
     let length = source.rng.pick(&[1e-44, 1e-42, 1e-38, 1e-30, 1e-10, 1e10, 1e30, 1e38]);
     let dir = ray.dir.as_dvec3().normalize_or_zero() * length;
-    Ray { dir: narrow(dir), ..ray }
+    let ray = Ray { dir: narrow(dir), ..ray };
+    met.map_or(ray, |corners| ending_at(source, ray, corners))
 }
 
 fn interval(source: &mut Source<'_>) -> Ray {

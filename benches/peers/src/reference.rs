@@ -1,7 +1,5 @@
 //! What is right: octogrid's own answers, of which some are confirmed by brute force.
 
-use std::sync::Mutex;
-
 use octogrid::oracle::brute;
 use octogrid::{Scene, TriMesh};
 
@@ -97,7 +95,7 @@ fn differ(a: &Answer, b: &Answer) -> bool {
 /// # Errors
 /// Where brute force does not agree.
 pub(crate) fn answers(scene: Scene, mesh: TriMesh<'_>, sets: &[RaySet]) -> Result<Vec<Answers>, String> {
-    let peer = Built { scene, calls: Calls::Batch, hits: Mutex::default() };
+    let peer = Built::new(scene, Calls::Batch);
     let right = |set: &RaySet| {
         let mut answers = Answers::room(set);
         answers.ask(&peer, set);

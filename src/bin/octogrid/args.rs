@@ -48,6 +48,17 @@ pub(crate) enum QualityChoice {
     Balanced,
 }
 
+impl QualityChoice {
+    /// The quality; none where the number of rays chooses it.
+    fn quality(self) -> Option<Quality> {
+        match self {
+            Self::Auto => None,
+            Self::Fast => Some(Quality::Fast),
+            Self::Balanced => Some(Quality::Balanced),
+        }
+    }
+}
+
 /// How to build the structure.
 #[derive(Debug, clap::Args)]
 pub(crate) struct BuildArgs {
@@ -97,7 +108,7 @@ impl BuildArgs {
         Ok(BuildOptions {
             structure,
             forced: self.forced(),
-            quality: if self.quality == QualityChoice::Fast { Quality::Fast } else { Quality::Balanced },
+            quality: self.quality.quality().unwrap_or_default(),
             memory_limit: self.memory_limit.unwrap_or(default.memory_limit),
             ..default
         })
@@ -105,12 +116,8 @@ impl BuildArgs {
 
     /// The same where at least so many rays will be asked of a model.
     pub(crate) fn for_rays(&self, options: &BuildOptions, rays: usize, model: &Model) -> BuildOptions {
-        match self.quality {
-            QualityChoice::Auto => {
-                BuildOptions { quality: Quality::for_rays(rays as u64, model.triangles.len()), ..*options }
-            }
-            QualityChoice::Fast | QualityChoice::Balanced => *options,
-        }
+        let suitable = Quality::for_rays(rays as u64, model.triangles.len());
+        BuildOptions { quality: self.quality.quality().unwrap_or(suitable), ..*options }
     }
 
     /// The parts that are forced.

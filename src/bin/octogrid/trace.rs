@@ -105,9 +105,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let options = args.build.options(args.structure)?;
     let is_built = saved::is_named(Path::new(&args.scene));
     if is_built && !(args.structure == Choice::Auto && args.build.is_empty()) {
-        let why =
-            "is built already: leave --structure, --params, --quality and --memory-limit to octogrid build";
-        return Err(Failure::Usage(format!("{} {why}", args.scene)));
+        let these = "--structure, --params, --force, --quality and --memory-limit";
+        let why = format!("{} is built already: leave {these} to octogrid build", args.scene);
+        return Err(Failure::Usage(why));
     }
     let output = Output::at(&args.hits)?;
     let model = if is_built { None } else { Some(load::load(&args.scene)?.model) };

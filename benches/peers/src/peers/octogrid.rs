@@ -34,7 +34,7 @@ impl Tracer for Octogrid {
         let Self { options, calls } = *self;
         Box::new(move || {
             let scene = Scene::build(&mesh, &options).expect("it builds");
-            Box::new(Built { scene, calls, hits: Mutex::default() })
+            Box::new(Built::new(scene, calls))
         })
     }
 
@@ -45,10 +45,10 @@ impl Tracer for Octogrid {
 
 /// A scene.
 pub(crate) struct Built {
-    pub(crate) scene: Scene,
-    pub(crate) calls: Calls,
+    scene: Scene,
+    calls: Calls,
     /// Room for those of many rays, kept from call to call.
-    pub(crate) hits: Mutex<Vec<Hit>>,
+    hits: Mutex<Vec<Hit>>,
 }
 
 impl Peer for Built {
@@ -112,6 +112,10 @@ impl Peer for Built {
 }
 
 impl Built {
+    pub(crate) fn new(scene: Scene, calls: Calls) -> Self {
+        Self { scene, calls, hits: Mutex::default() }
+    }
+
     fn count_one(&self, ray: &Ray, hits: &mut Vec<Hit>) -> u32 {
         loop {
             let found = self.scene.all(ray, hits);

@@ -53,18 +53,19 @@ pub(super) fn geometric_mean(numbers: impl Iterator<Item = f64>) -> f64 {
     (sum / f64::from(n)).exp()
 }
 
+fn of_kind(points: &[Point], kind: Kind) -> Option<&Point> {
+    points.iter().find(|point| point.kind == kind)
+}
+
 /// The plan of a scene.
 pub(super) fn plan(points: &[Point]) -> &Point {
-    points.iter().find(|point| point.kind == Kind::Plan).expect("each scene has a plan")
+    of_kind(points, Kind::Plan).expect("each scene has a plan")
 }
 
 /// The plan relative to the variants of a kind, of each scene that has one.
 pub(super) fn against(scenes: &[Vec<Point>], kind: Kind) -> Vec<(&Point, Ratios)> {
-    let of = |points: &'_ Vec<Point>| -> Option<Ratios> {
-        let other = points.iter().find(|point| point.kind == kind)?;
-        Some(Ratios::new(plan(points), other))
-    };
-    scenes.iter().filter_map(|points| Some((plan(points), of(points)?))).collect()
+    let of = |points| Some((plan(points), Ratios::new(plan(points), of_kind(points, kind)?)));
+    scenes.iter().filter_map(|points: &Vec<Point>| of(points)).collect()
 }
 
 /// The structure and quality with the shortest time to an image, and relative to it the time of the plan in the
@@ -74,7 +75,7 @@ pub(super) fn best(points: &[Point], rays: f64) -> (&Point, f64) {
     let best = choices.min_by(|a, b| a.image_ms(rays).total_cmp(&b.image_ms(rays)));
     let plan = plan(points);
     let auto = match Quality::for_rays((KINDS.len() as f64 * rays) as u64, plan.triangles) {
-        Quality::Fast => points.iter().find(|point| point.kind == Kind::Fast).unwrap_or(plan),
+        Quality::Fast => of_kind(points, Kind::Fast).unwrap_or(plan),
         Quality::Balanced => plan,
     };
     let best = best.expect("each scene has a plan");

@@ -25,7 +25,8 @@ pub(super) enum Kind {
     Structure,
 }
 
-/// The plan, all parts, the plan built fast, the plan with each part that matters the other way round, and every structure.
+/// The plan, all parts, the plan built fast, the plan with each part that matters the other way round, and every
+/// structure.
 pub(super) fn variants(profile: &SceneProfile) -> Vec<Variant> {
     let plan = Plan::new(profile, Forced::default());
     let planned = |name: String, forced, kind| Variant {

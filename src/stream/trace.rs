@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::gather::Gather;
+use super::gather::{Gather, OPEN};
 use super::rows::{self, TILE};
 use crate::arena::Form;
 use crate::hit::Hit;
-use crate::lanes::{WIDTH, dispatch};
-use crate::query::{Any, Closest, Wanted};
+use crate::lanes::dispatch;
+use crate::query::{Any, Closest};
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::traverse::{self, FEWEST, GROUP, Group, Outcome, PACKETS, Packet, PerRay};
@@ -72,6 +72,8 @@ struct Stream<'a, Q: PerRay> {
     group: Group<'a>,
     gather: Gather,
     gathered: Gathered,
+    /// Room for the rays of a gathered group, and for their answers.
+    room: ([Ray; GROUP], [Q::Answer; GROUP]),
 }
 
 /// What has become of the rays gathered in a block.
@@ -79,16 +81,14 @@ struct Stream<'a, Q: PerRay> {
 struct Gathered {
     /// They were traced together.
     together: usize,
-    /// Those of them that are blocked, where that is all that is asked.
-    blocked: usize,
     /// They were not to be traced together.
     refused: usize,
 }
 
 impl Gathered {
-    /// Whether that was faster than ray by ray. What is blocked ends early alone, and late in a group.
+    /// Whether that was faster than ray by ray.
     fn pays(&self) -> bool {
-        8 * self.refused <= self.together && 4 * self.blocked <= self.together
+        8 * self.refused <= self.together
     }
 }
 
@@ -131,7 +131,7 @@ impl<Q: PerRay> Stream<'_, Q> {
             };
             at = end;
         }
-        (0..WIDTH).for_each(|slot| self.close(slot));
+        (0..OPEN).for_each(|slot| self.close(slot));
     }
 
     /// Answers neighbours together.
@@ -160,7 +160,7 @@ impl<Q: PerRay> Stream<'_, Q> {
                     None => {
                         let slot = self.gather.oldest();
                         self.close(slot);
-                        self.gather.open(slot, ray);
+                        self.gather.open(lanes, slot, ray);
                         opened += 1;
                         slot
                     }
@@ -178,15 +178,12 @@ impl<Q: PerRay> Stream<'_, Q> {
     fn close(&mut self, slot: usize) {
         let len = std::mem::take(&mut self.gather.len[slot]);
         let members = &self.gather.rays[slot][..len];
-        let mut rays = [self.rays[0]; GROUP];
-        let mut answers = [Q::up_to(0.0).answer(); GROUP];
+        let (rays, answers) = (&mut self.room.0[..len], &mut self.room.1[..len]);
         (0..len).for_each(|i| rays[i] = self.rays[members[i] as usize]);
-        let (rays, answers) = (&rays[..len], &mut answers[..len]);
         let Scene { isa, arena, .. } = self.scene;
         let mut together = || traverse::group::<Q>(*isa, arena, &mut self.group, rays, answers);
         if len >= FEWEST && together() == Outcome::Answered {
             self.gathered.together += len;
-            self.gathered.blocked += if Q::WANTED == Wanted::Any { self.group.found() } else { 0 };
         } else {
             self.gathered.refused += if len >= FEWEST { len } else { 0 };
             self.scene.each_ray::<Q>(rays, answers);
@@ -235,5 +232,6 @@ fn stream<Q: PerRay>(scene: &Scene, rays: &[Ray], answers: &mut [Q::Answer]) {
     let gather = Gather::new(grid.cell * f64::from(grid.longest()));
     let mut packets = [Packet::ZERO; PACKETS];
     let (group, gathered) = (Group::new(&mut packets), Gathered::default());
-    Stream::<Q> { scene, rays, answers, group, gather, gathered }.run();
+    let room = ([rays[0]; GROUP], [Q::up_to(0.0).answer(); GROUP]);
+    Stream::<Q> { scene, rays, answers, group, gather, gathered, room }.run();
 }

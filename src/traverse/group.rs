@@ -127,14 +127,6 @@ impl<'a> Group<'a> {
         self.len.div_ceil(WIDTH)
     }
 
-    /// How many rays have a hit.
-    #[cfg(feature = "parallel")]
-    pub(crate) fn found(&self) -> usize {
-        let found: u32 =
-            self.packets[..self.packets()].iter().map(|packet| packet.nearest.found().count_ones()).sum();
-        found as usize
-    }
-
     /// One of the rays, but for its interval.
     #[inline(always)]
     pub(crate) fn line(&self, packet: usize, lane: usize) -> Ray {

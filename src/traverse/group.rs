@@ -245,10 +245,10 @@ impl Packet {
 
     /// Rays with a hit are done.
     #[inline(always)]
-    pub(crate) fn finish(&mut self) {
-        for lane in 0..WIDTH {
-            self.span[0][lane] = if self.nearest.is_hit(lane) { f32::INFINITY } else { self.span[0][lane] };
-        }
+    pub(crate) fn finish<L: Lanes>(&mut self, lanes: L) {
+        let hits = lanes.mask(self.nearest.found());
+        let low = lanes.select(hits, lanes.splat(f32::INFINITY), lanes.load(&self.span[0]));
+        self.span[0] = lanes.store(low);
     }
 
     /// Nothing beyond the closest hits counts.

@@ -265,7 +265,11 @@ impl<L: Doubles, Q: Query> Coherent<'_, '_, L, Q> {
         self.changed = true;
         let (rises, slack) = (self.group.rises, self.group.slack);
         let packet = &mut self.group.packets[i];
-        if Q::WANTED == Wanted::Any { packet.finish() } else { packet.shorten(self.lanes, rises, slack) }
+        if Q::WANTED == Wanted::Any {
+            packet.finish(self.lanes)
+        } else {
+            packet.shorten(self.lanes, rises, slack)
+        }
     }
 }
 

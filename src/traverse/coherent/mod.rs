@@ -29,7 +29,7 @@ const WIDEST: f32 = 0.2;
 /// What a group may do for each of its rays: visit a voxel, test a group of boxes, or test a box against its
 /// rays. Where it does more, as with rays that are far apart in the scale of what they meet, they are faster
 /// alone.
-const EFFORT: u32 = 12;
+const EFFORT: u32 = 24;
 
 /// Traces a group.
 pub(crate) struct Coherent<'a, 'b, L, Q> {

@@ -160,7 +160,7 @@ impl<Q: PerRay> Stream<'_, Q> {
                     None => {
                         let slot = self.gather.oldest();
                         self.close(slot);
-                        self.gather.open(lanes, slot, ray);
+                        self.gather.open(slot, ray);
                         opened += 1;
                         slot
                     }

@@ -128,7 +128,7 @@ impl<'a> Shading<'a> {
             return shadow.time(rays.len(), through);
         }
         let mut occluded = vec![false; rays.len()];
-        shadow.time(rays.len(), || self.scene.occluded_batch(rays, &mut occluded));
+        shadow.time(rays.len(), || self.scene.occluded_stream(rays, &mut occluded));
         occluded.iter().map(|&occluded| if occluded { Vec3::ZERO } else { Vec3::ONE }).collect()
     }
 

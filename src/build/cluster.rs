@@ -22,7 +22,7 @@ use super::options::Quality;
 use super::sah::{self, Member};
 use crate::aabb::Aabb;
 use crate::cluster::Cluster;
-use crate::lanes::WIDTH;
+use crate::lanes::{Isa, WIDTH};
 use crate::mesh::TriMesh;
 use crate::parallel;
 
@@ -32,18 +32,18 @@ const RUN: usize = 64;
 /// Gathers the triangles of the analysis into clusters, neighbours near each other.
 ///
 /// The same for any number of threads.
-pub(crate) fn clusters(mesh: &TriMesh<'_>, analysis: &Analysis, quality: Quality) -> Vec<Cluster> {
+pub(crate) fn clusters(mesh: &TriMesh<'_>, analysis: &Analysis, isa: Isa, quality: Quality) -> Vec<Cluster> {
     let boxes = &analysis.boxes;
     let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
     let mut ends = vec![false; order.len()];
-    arrange(boxes, &analysis.centers, &mut order, &mut ends, quality);
+    arrange(boxes, &analysis.centers, &mut order, &mut ends, isa, quality);
     if quality == Quality::Fast {
         return filled(mesh, analysis, &order);
     }
     let found = runs(&ends);
     parallel::for_each(parts(&mut order, &mut ends, &found), |(run, ends)| {
         let mut members: Vec<Member> = run.iter().map(|&i| Member::new(i, &boxes[i as usize])).collect();
-        sah::split(&mut members, ends, &|_: &Member| 1, WIDTH);
+        sah::split(isa, &mut members, ends, &|_: &Member| 1, WIDTH);
         run.iter_mut().zip(&members).for_each(|(i, member)| *i = member.index());
     });
     parallel::map(&runs(&ends), |run| gather(mesh, analysis, &order[run.clone()]))
@@ -86,7 +86,7 @@ fn parts<'a>(
 }
 
 /// Orders triangles by runs of neighbours and marks the last of each run; those of [`Quality::Fast`] are cells.
-fn arrange(boxes: &[Aabb], centers: &Aabb, order: &mut [u32], ends: &mut [bool], quality: Quality) {
+fn arrange(boxes: &[Aabb], centers: &Aabb, order: &mut [u32], ends: &mut [bool], isa: Isa, quality: Quality) {
     const CROWDED: usize = 256;
     let grid = grid::cubic(centers, order.len() as f64 / 4.0);
     let (cells, sorted, groups, last) = match quality {
@@ -100,7 +100,7 @@ fn arrange(boxes: &[Aabb], centers: &Aabb, order: &mut [u32], ends: &mut [bool],
         Quality::Balanced => {
             let places = Places::new(&grid);
             let (cells, sorted) = sort_by_cell(boxes, order, grid.len(), |b| places.of(b));
-            let (groups, last) = split_cells(boxes, &cells, &sorted);
+            let (groups, last) = split_cells(boxes, &cells, &sorted, isa);
             (cells, sorted, groups, last)
         }
     };
@@ -119,18 +119,19 @@ fn arrange(boxes: &[Aabb], centers: &Aabb, order: &mut [u32], ends: &mut [bool],
     }
     parallel::for_each(parts(order, ends, &crowds), |(crowd, ends)| {
         let centers = Around::new(crowd.iter().map(|&i| &boxes[i as usize])).centers;
-        arrange(boxes, &centers, crowd, ends, quality);
+        arrange(boxes, &centers, crowd, ends, isa, quality);
     });
 }
 
 /// The order of cells by runs of few triangles, and which of them end a run.
-fn split_cells(boxes: &[Aabb], cells: &[Range<usize>], sorted: &[u32]) -> (Vec<u32>, Vec<bool>) {
+fn split_cells(boxes: &[Aabb], cells: &[Range<usize>], sorted: &[u32], isa: Isa) -> (Vec<u32>, Vec<bool>) {
     let bounds =
         |cell: &Range<usize>| Around::new(sorted[cell.clone()].iter().map(|&i| &boxes[i as usize])).bounds;
     let around = parallel::map(cells, bounds);
     let mut groups: Vec<Member> = (0..).zip(&around).map(|(i, b)| Member::new(i, b)).collect();
     let mut last = vec![false; groups.len()];
-    sah::split(&mut groups, &mut last, &|group: &Member| cells[group.index() as usize].len(), RUN);
+    let weight = |group: &Member| cells[group.index() as usize].len();
+    sah::split(isa, &mut groups, &mut last, &weight, RUN);
     (groups.iter().map(Member::index).collect(), last)
 }
 
@@ -185,7 +186,7 @@ mod tests {
         let mesh = TriMesh::new(&vertices, &triangles).unwrap();
         let analysis = Analysis::new(&mesh);
         for quality in [Quality::Fast, Quality::Balanced] {
-            let clusters = clusters(&mesh, &analysis, quality);
+            let clusters = clusters(&mesh, &analysis, Isa::detect(), quality);
             let ids = clusters.iter().flat_map(|c| *c.ids()).filter(|&i| i != u32::MAX);
             let mut ids: Vec<u32> = ids.collect();
             ids.sort_unstable();
@@ -199,7 +200,7 @@ mod tests {
         let triangles = [[0, 1, 2]; 100];
         let mesh = TriMesh::new(&vertices, &triangles).unwrap();
         for quality in [Quality::Fast, Quality::Balanced] {
-            assert_eq!(clusters(&mesh, &Analysis::new(&mesh), quality).len(), 13);
+            assert_eq!(clusters(&mesh, &Analysis::new(&mesh), Isa::detect(), quality).len(), 13);
         }
     }
 }

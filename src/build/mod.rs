@@ -58,7 +58,7 @@ fn structured(
 ) -> Result<Arena, BuildError> {
     let clusters = match structure {
         Structure::Brute => cluster::in_order(mesh, analysis),
-        _ => cluster::clusters(mesh, analysis, options.quality),
+        _ => cluster::clusters(mesh, analysis, options.isa, options.quality),
     };
     match structure {
         Structure::Uniform(p) => finish(&policy::Uniform::new(p, analysis), clusters, analysis, 0, options),

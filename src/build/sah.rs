@@ -2,13 +2,13 @@
 //!
 //! Recursive binary splits at the cheapest of 16 planes an axis (I. Wald, "On fast Construction of
 //! SAH-based Bounding Volume Hierarchies", 2007), where the cost of a side is its area times the number
-//! of clusters that it fills. O(n log n), in parallel, in place.
+//! of clusters that it fills, and all axes are taken at once. O(n log n), in parallel, in place.
 
-use glam::Vec4;
+use glam::{Mat4, Vec4};
 
 use super::grid::WHOLE;
 use crate::aabb::Aabb;
-use crate::lanes::WIDTH;
+use crate::lanes::{Isa, Lanes, WIDTH, axes, dispatch};
 use crate::parallel;
 
 const BINS: usize = 16;
@@ -22,61 +22,83 @@ impl<F: Fn(&Member) -> usize + Sync> Weight for F {}
 
 /// The box and index of a triangle or of a group of them.
 ///
-/// The fourth lanes hold the halves of the index as whole numbers: arithmetic on all four lanes is one
+/// The lower corner and the negated upper one: the lesser values of two boxes are the box around both. The
+/// fourth of four lanes hold the halves of the index as whole numbers: arithmetic on all lanes is one
 /// instruction, and slow where one is subnormal.
 #[derive(Clone, Copy)]
-pub(super) struct Member {
-    lo: Vec4,
-    hi: Vec4,
-}
+// No more, as allocators take longer for what they do not align anyhow.
+#[repr(align(16))]
+pub(super) struct Member([f32; WIDTH]);
 
 impl Member {
     pub(super) fn new(index: u32, b: &Aabb) -> Self {
-        Self { lo: b.lo.extend((index & 0xffff) as f32), hi: b.hi.extend((index >> 16) as f32) }
+        let [x, y, z] = b.lo.to_array();
+        let [u, v, w] = (-b.hi).to_array();
+        Self([x, y, z, (index & 0xffff) as f32, u, v, w, (index >> 16) as f32])
     }
 
     pub(super) fn index(&self) -> u32 {
-        self.lo.w as u32 | (self.hi.w as u32) << 16
+        self.0[3] as u32 | (self.0[7] as u32) << 16
     }
 
     #[inline(always)]
     fn center(&self) -> Vec4 {
-        self.lo * 0.5 + self.hi * 0.5
+        Vec4::from_slice(&self.0[..4]) * 0.5 - Vec4::from_slice(&self.0[4..]) * 0.5
     }
 }
 
 /// Splits until what is left weighs at most `most`, and marks the last of it in `ends`; halves where no
 /// plane helps or planes have peeled off little by little.
-pub(super) fn split<W: Weight>(members: &mut [Member], ends: &mut [bool], weight: &W, most: usize) {
-    split_at(members, ends, weight, most, 0);
+pub(super) fn split<W: Weight>(isa: Isa, members: &mut [Member], ends: &mut [bool], weight: &W, most: usize) {
+    dispatch!(isa, lanes => split_at(lanes, members, ends, weight, most, 0));
 }
 
-fn split_at<W: Weight>(members: &mut [Member], ends: &mut [bool], weight: &W, most: usize, depth: u32) {
-    const MAX_UNEVEN_DEPTH: u32 = 64;
+fn split_at<L: Lanes + Sync, W: Weight>(
+    lanes: L,
+    members: &mut [Member],
+    ends: &mut [bool],
+    weight: &W,
+    most: usize,
+    depth: u32,
+) {
     const PARALLEL: usize = 512;
     if members.len() <= 1 || members.iter().map(weight).sum::<usize>() <= most {
         ends.last_mut().into_iter().for_each(|end| *end = true);
         return;
     }
-    let plane = if members.len() < 4 * BINS {
-        cheapest_plane::<8, W>(members, weight)
-    } else {
-        cheapest_plane::<BINS, W>(members, weight)
-    };
-    let middle = match plane {
-        Some(plane) if depth < MAX_UNEVEN_DEPTH => partition(members, |member| plane.is_below(member)),
-        _ => half(members.len()),
-    };
+    let middle = lanes.vectorize(
+        #[inline(always)]
+        || divided(lanes, members, weight, depth),
+    );
     let serial = middle.min(members.len() - middle) < PARALLEL;
     let (below, above) = members.split_at_mut(middle);
     let (ends_below, ends_above) = ends.split_at_mut(middle);
-    let mut first = || split_at(below, ends_below, weight, most, depth + 1);
-    let mut second = || split_at(above, ends_above, weight, most, depth + 1);
+    let mut first = || split_at(lanes, below, ends_below, weight, most, depth + 1);
+    let mut second = || split_at(lanes, above, ends_above, weight, most, depth + 1);
     if serial {
         first();
         second();
     } else {
         parallel::join(first, second);
+    }
+}
+
+/// Moves the members of one side to the front and returns how many these are.
+#[inline(always)]
+fn divided<L: Lanes, W: Weight>(lanes: L, members: &mut [Member], weight: &W, depth: u32) -> usize {
+    const MAX_UNEVEN_DEPTH: u32 = 64;
+    let plane = if members.len() < 4 * BINS {
+        cheapest_plane::<8, L, W>(lanes, members, weight)
+    } else {
+        cheapest_plane::<BINS, L, W>(lanes, members, weight)
+    };
+    match plane {
+        Some(plane) if depth < MAX_UNEVEN_DEPTH => partition(
+            members,
+            #[inline(always)]
+            |member| plane.is_below(member),
+        ),
+        _ => half(members.len()),
     }
 }
 
@@ -92,6 +114,7 @@ struct Binning {
 }
 
 impl Binning {
+    #[inline(always)]
     fn new(members: &[Member], bins: usize) -> Self {
         let (mut lo, mut hi) = (Vec4::MAX, Vec4::MIN);
         for member in members {
@@ -129,67 +152,111 @@ impl Plane {
     }
 }
 
-#[derive(Clone, Copy)]
-struct Bin {
-    lo: Vec4,
-    hi: Vec4,
-    count: usize,
+/// The boxes around the members in each bin of each axis, and what these weigh by bin and axis.
+struct Bins<const N: usize> {
+    boxes: [[Member; N]; 3],
+    weights: [[f32; 4]; N],
 }
 
-impl Bin {
-    const EMPTY: Self = Self { lo: Vec4::MAX, hi: Vec4::MIN, count: 0 };
-
+impl<const N: usize> Bins<N> {
     #[inline(always)]
-    fn merge(self, other: Self) -> Self {
-        Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi), count: self.count + other.count }
+    fn new<L: Lanes, W: Weight>(lanes: L, binning: &Binning, members: &[Member], weight: &W) -> Self {
+        let mut bins = Self { boxes: [[Member([f32::MAX; WIDTH]); N]; 3], weights: [[0.0; 4]; N] };
+        for member in members {
+            let of = binning.of(member).to_array();
+            let weight = weight(member) as f32;
+            let member = lanes.load(&member.0);
+            for axis in 0..3 {
+                let bin = of[axis].to_bits() as usize % N;
+                let Member(all) = &mut bins.boxes[axis][bin];
+                *all = lanes.store(lanes.min(lanes.load(all), member));
+                bins.weights[bin][axis] += weight;
+            }
+        }
+        bins
+    }
+}
+
+/// Bins that follow one another as one, by axis.
+struct Side<L: Lanes> {
+    boxes: [L::F32; 3],
+    /// The fourth means nothing.
+    weight: Vec4,
+}
+
+impl<L: Lanes> Side<L> {
+    #[inline(always)]
+    fn empty(lanes: L) -> Self {
+        Self { boxes: [lanes.splat(f32::MAX); 3], weight: Vec4::ZERO }
     }
 
     #[inline(always)]
-    fn cost(&self) -> f32 {
-        let [x, y, z, _] = (self.hi - self.lo).to_array();
-        (x * y + y * z + z * x) * self.count.div_ceil(WIDTH) as f32
+    fn add<const N: usize>(&mut self, lanes: L, bins: &Bins<N>, bin: usize) {
+        for axis in 0..3 {
+            self.boxes[axis] = lanes.min(self.boxes[axis], lanes.load(&bins.boxes[axis][bin].0));
+        }
+        self.weight += Vec4::from_array(bins.weights[bin]);
+    }
+
+    /// Half of the area times the number of clusters that the weight fills.
+    #[inline(always)]
+    fn costs(&self, lanes: L) -> Vec4 {
+        // Negative all three, which their products are not.
+        let [a, b, c] = axes(
+            #[inline(always)]
+            |axis| {
+                let corners = lanes.store(self.boxes[axis]);
+                Vec4::from_slice(&corners[..4]) + Vec4::from_slice(&corners[4..])
+            },
+        );
+        let [x, y, z] = {
+            let sides = Mat4::from_cols(a, b, c, c).transpose();
+            [sides.x_axis, sides.y_axis, sides.z_axis]
+        };
+        const PART: f32 = 1.0 / WIDTH as f32;
+        // To the nearest whole number, from less than a half below the next one: rounded up.
+        let clusters = self.weight * PART + (0.5 - 0.5 * PART) + WHOLE - WHOLE;
+        (x * y + y * z + z * x) * clusters
     }
 }
 
 /// The cheapest plane that has members on both sides.
-fn cheapest_plane<const N: usize, W: Weight>(members: &[Member], weight: &W) -> Option<Plane> {
+#[inline(always)]
+fn cheapest_plane<const N: usize, L: Lanes, W: Weight>(
+    lanes: L,
+    members: &[Member],
+    weight: &W,
+) -> Option<Plane> {
     let binning = Binning::new(members, N);
-    let mut bins = [[Bin::EMPTY; N]; 3];
-    for member in members {
-        let of = binning.of(member).to_array().map(|x| x.to_bits() as usize % N);
-        let count = weight(member);
-        for axis in 0..3 {
-            if binning.scale[axis] > 0.0 {
-                let bin = &mut bins[axis][of[axis]];
-                *bin = bin.merge(Bin { lo: member.lo, hi: member.hi, count });
-            }
-        }
+    let bins = Bins::<N>::new(lanes, &binning, members, weight);
+    let mut above = Side::empty(lanes);
+    let mut costs = [Vec4::ZERO; N];
+    for bin in (1..N).rev() {
+        above.add(lanes, &bins, bin);
+        costs[bin - 1] = above.costs(lanes);
     }
-    let mut best = (f32::INFINITY, 0, 0);
+    let mut below = Side::empty(lanes);
+    let (mut least, mut last) = (Vec4::INFINITY, Vec4::ZERO);
+    for bin in 0..N - 1 {
+        below.add(lanes, &bins, bin);
+        let cost = below.costs(lanes) + costs[bin];
+        let is_less = cost.cmplt(least);
+        least = Vec4::select(is_less, cost, least);
+        last = Vec4::select(is_less, Vec4::splat(bin as f32), last);
+    }
+    let (mut best, mut plane) = (f32::INFINITY, None);
     for axis in 0..3 {
-        // The outer bins are occupied, so no side is empty.
-        if binning.scale[axis] > 0.0 {
-            let mut above = Bin::EMPTY;
-            let mut costs = [0.0; N];
-            for i in (1..N).rev() {
-                above = above.merge(bins[axis][i]);
-                costs[i - 1] = above.cost();
-            }
-            let mut below = Bin::EMPTY;
-            for i in 0..N - 1 {
-                below = below.merge(bins[axis][i]);
-                let cost = below.cost() + costs[i];
-                if cost < best.0 {
-                    best = (cost, axis, i);
-                }
-            }
+        // The outer bins of an axis that is tried are occupied, so no side is empty.
+        if binning.scale[axis] > 0.0 && least[axis] < best {
+            (best, plane) = (least[axis], Some((axis, last[axis] as usize)));
         }
     }
-    let (cost, axis, bin) = best;
-    cost.is_finite().then_some(Plane { binning, axis, bin })
+    let (axis, bin) = plane?;
+    Some(Plane { binning, axis, bin })
 }
 
 /// Moves what is below to the front and returns how many these are.
+#[inline(always)]
 fn partition(members: &mut [Member], is_below: impl Fn(&Member) -> bool) -> usize {
     let mut count = 0;
     for i in 0..members.len() {

@@ -35,8 +35,8 @@ impl Answer {
     /// Where there is room for another number of rays.
     pub(crate) fn ask(&mut self, scene: &Scene, rays: &[Ray]) {
         match self {
-            Self::Closest(hits) => scene.closest_batch(rays, hits),
-            Self::Any(hits) => scene.occluded_batch(rays, hits),
+            Self::Closest(hits) => scene.closest_stream(rays, hits),
+            Self::Any(hits) => scene.occluded_stream(rays, hits),
             Self::All(lists) => *lists = scene.all_batch(rays),
         }
     }

@@ -1,8 +1,8 @@
 //! Instruction counts under valgrind: `cargo bench --bench instructions`.
 //!
 //! Needs valgrind and gungraun-runner; `cargo bench --bench gate` compares the counts with those that
-//! are committed. Every case checks its answers in its set-up, which is not counted. Scenes are given back, as
-//! what it takes to free them depends on the heap.
+//! are committed. Every case checks its answers in its set-up, which is not counted, and gives back what it was
+//! given, as what it takes to free that depends on the heap.
 
 mod cases;
 
@@ -70,23 +70,23 @@ fn checked_entries(levels: u32) -> (Vec<Entry>, u32) {
 #[library_benchmark(setup = checked_entries)]
 #[bench::one_level(1)]
 #[bench::to_the_leaf(8)]
-fn descend_general_2((entries, levels): (Vec<Entry>, u32)) -> u32 {
-    black_box(down_general::<2>(black_box(&entries), black_box(levels)))
+fn descend_general_2((entries, levels): (Vec<Entry>, u32)) -> (u32, Vec<Entry>) {
+    (black_box(down_general::<2>(black_box(&entries), black_box(levels))), entries)
 }
 
 // Two levels of N = 2 at once.
 #[library_benchmark(setup = checked_entries)]
 #[bench::one_level(1)]
 #[bench::to_the_leaf(4)]
-fn descend_general_4((entries, levels): (Vec<Entry>, u32)) -> u32 {
-    black_box(down_general::<4>(black_box(&entries), black_box(levels)))
+fn descend_general_4((entries, levels): (Vec<Entry>, u32)) -> (u32, Vec<Entry>) {
+    (black_box(down_general::<4>(black_box(&entries), black_box(levels))), entries)
 }
 
 #[library_benchmark(setup = checked_entries)]
 #[bench::one_level(1)]
 #[bench::to_the_leaf(8)]
-fn descend_halves((entries, levels): (Vec<Entry>, u32)) -> u32 {
-    black_box(down_halves(black_box(&entries), black_box(levels)))
+fn descend_halves((entries, levels): (Vec<Entry>, u32)) -> (u32, Vec<Entry>) {
+    (black_box(down_halves(black_box(&entries), black_box(levels))), entries)
 }
 
 /// Where a step leads.
@@ -99,9 +99,12 @@ enum Step {
     OtherwiseDivided,
 }
 
-/// Parts from which the next step leads there, by both codes.
-fn parts(step: Step) -> (Vec<(General<2>, u32)>, Vec<(Halves, u32)>, Step) {
-    let mut all = (Vec::new(), Vec::new(), step);
+/// Parts of divided voxels with the axes along which a ray rises, by both codes.
+type Parts = (Vec<(General<2>, u32)>, Vec<(Halves, u32)>);
+
+/// Parts from which the next step leads there.
+fn parts(step: Step) -> (Parts, Step) {
+    let mut all = (Vec::new(), Vec::new());
     for (exit, width, time, rises) in entries() {
         let mut general = General::<2>::whole(exit, width).descend(time, rises);
         let mut halves = Halves::whole(exit, width).descend(time, rises);
@@ -122,16 +125,16 @@ fn parts(step: Step) -> (Vec<(General<2>, u32)>, Vec<(Halves, u32)>, Step) {
     all.0.truncate(32);
     all.1.truncate(32);
     assert_eq!(all.0.len(), 32);
-    all
+    (all, step)
 }
 
 #[library_benchmark(setup = parts)]
 #[bench::sibling(Step::Sibling)]
 #[bench::out(Step::Out)]
 #[bench::otherwise_divided(Step::OtherwiseDivided)]
-fn step_general_2((parts, _, step): (Vec<(General<2>, u32)>, Vec<(Halves, u32)>, Step)) -> u32 {
+fn step_general_2((parts, step): (Parts, Step)) -> (u32, Parts) {
     let mut sum = 0;
-    for (part, rises) in black_box(&parts) {
+    for (part, rises) in black_box(&parts.0) {
         let mut part = *part;
         let axis = first_exit(&part.exit);
         let time = part.exit[axis];
@@ -139,16 +142,16 @@ fn step_general_2((parts, _, step): (Vec<(General<2>, u32)>, Vec<(Halves, u32)>,
         let part = if step == Step::OtherwiseDivided { part.descend(time, *rises) } else { part };
         sum += part.voxel;
     }
-    black_box(sum)
+    (black_box(sum), parts)
 }
 
 #[library_benchmark(setup = parts)]
 #[bench::sibling(Step::Sibling)]
 #[bench::out(Step::Out)]
 #[bench::otherwise_divided(Step::OtherwiseDivided)]
-fn step_halves((_, parts, step): (Vec<(General<2>, u32)>, Vec<(Halves, u32)>, Step)) -> u32 {
+fn step_halves((parts, step): (Parts, Step)) -> (u32, Parts) {
     let mut sum = 0;
-    for (part, rises) in black_box(&parts) {
+    for (part, rises) in black_box(&parts.1) {
         let mut part = *part;
         let axis = first_exit(part.exit());
         let time = part.exit()[axis];
@@ -156,7 +159,7 @@ fn step_halves((_, parts, step): (Vec<(General<2>, u32)>, Vec<(Halves, u32)>, St
         let part = if step == Step::OtherwiseDivided { part.descend(time, *rises) } else { part };
         sum += part.voxel;
     }
-    black_box(sum)
+    (black_box(sum), parts)
 }
 
 /// `room` with few rays: valgrind is slow.

@@ -22,9 +22,9 @@ impl<F: Fn(&Member) -> usize + Sync> Weight for F {}
 
 /// The box and index of a triangle or of a group of them.
 ///
-/// The lower corner and the negated upper one: the lesser values of two boxes are the box around both. The
-/// fourth of four lanes hold the halves of the index as whole numbers: arithmetic on all lanes is one
-/// instruction, and slow where one is subnormal.
+/// The lower corner and the negated upper one: the lesser values of two boxes are the box around both. The lanes
+/// behind them hold the halves of the index as whole numbers: arithmetic on all lanes is one instruction, and
+/// slow where one is subnormal.
 #[derive(Clone, Copy)]
 // No more, as allocators take longer for what they do not align anyhow.
 #[repr(align(16))]
@@ -214,7 +214,8 @@ impl<L: Lanes> Side<L> {
             [sides.x_axis, sides.y_axis, sides.z_axis]
         };
         const PART: f32 = 1.0 / WIDTH as f32;
-        // To the nearest whole number, from less than a half below the next one: rounded up.
+        // Rounded up: what is added takes any part of a cluster beyond one half, and a full one not so far. Weights
+        // from 2^24 on are rounded, which moves planes a little and changes no answer.
         let clusters = self.weight * PART + (0.5 - 0.5 * PART) + WHOLE - WHOLE;
         (x * y + y * z + z * x) * clusters
     }

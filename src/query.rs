@@ -203,12 +203,15 @@ impl Query for All<'_> {
         self.t_max
     }
 
-    /// O(log n) to find the place and O(n) to make room; hits come nearly in order, so that little
-    /// has to move.
+    /// O(1) for hits in order, as most come, O(n) where one comes late.
     #[inline]
     fn accept(&mut self, hit: Hit) -> ControlFlow<()> {
-        let at = self.hits[..self.len].partition_point(|h| h.precedes(&hit));
-        if at < self.len && !hit.precedes(&self.hits[at]) {
+        let before = |at: usize| at.checked_sub(1).map(|last| self.hits[last]);
+        let mut at = self.len;
+        while before(at).is_some_and(|last| hit.precedes(&last)) {
+            at -= 1;
+        }
+        if before(at).is_some_and(|last| !last.precedes(&hit)) {
             return ControlFlow::Continue(());
         }
         if self.len < self.hits.len() {
@@ -217,7 +220,9 @@ impl Query for All<'_> {
             self.complete = false;
         }
         if at < self.len {
-            self.hits.copy_within(at..self.len - 1, at + 1);
+            if at + 1 < self.len {
+                self.hits.copy_within(at..self.len - 1, at + 1);
+            }
             self.hits[at] = hit;
         }
         if !self.complete {

@@ -93,11 +93,16 @@ impl Dda {
     /// Steps to the next voxel; false where the path leaves after `limit`, which is no later than its end.
     #[inline(always)]
     pub(crate) fn advance(&mut self, limit: f64, steps: &Steps) -> bool {
+        // Before the axis: most walks end here, and no processor foresees along which.
+        let [x, y, z] = self.exit;
+        if limit < lesser(lesser(x, y), z) {
+            return false;
+        }
         // Constant indices keep the state in registers.
         match self.axis() {
-            0 => self.exit[0] <= limit && self.cross(0, steps),
-            1 => self.exit[1] <= limit && self.cross(1, steps),
-            _ => self.exit[2] <= limit && self.cross(2, steps),
+            0 => self.cross(0, steps),
+            1 => self.cross(1, steps),
+            _ => self.cross(2, steps),
         }
     }
 

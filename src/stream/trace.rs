@@ -27,6 +27,12 @@ const GATHERED: usize = 15;
 /// Groups that are traced ray by ray after a block in which it did not pay.
 const PAUSE: usize = 60;
 
+/// Rays of a block that are looked at before it is gathered, by fours.
+const SAMPLED: usize = 32;
+
+/// Of those, how many have to meet the scene's box: to find out that a ray does not takes less than to gather it.
+const FEWEST_ENTERING: u32 = 20;
+
 /// Groups that the first 64 rays of a block may open: more show that rays go all ways.
 const MOST_OPENED: usize = 16;
 
@@ -118,6 +124,10 @@ impl<Q: PerRay> Stream<'_, Q> {
                         continue;
                     }
                 },
+                Mode::Gather(0) if !self.enter(at, end) => {
+                    mode = Mode::Single(PAUSE);
+                    continue;
+                }
                 Mode::Gather(blocks) => match self.gather(at, end) {
                     true if blocks == 0 => Mode::Gather(GATHERED),
                     true if blocks == 1 => Mode::Runs,
@@ -142,6 +152,14 @@ impl<Q: PerRay> Stream<'_, Q> {
             return Outcome::Apart;
         }
         traverse::group::<Q>(*isa, arena, &mut self.group, rays, answers)
+    }
+
+    /// Whether enough of the rays meet the scene's box.
+    fn enter(&self, at: usize, end: usize) -> bool {
+        let Scene { isa, arena, .. } = self.scene;
+        let sampled = |i: usize| self.rays[at + i * (end - at) / SAMPLED];
+        let entering = |i: usize| traverse::entering(*isa, arena, &[0, 1, 2, 3].map(|k| sampled(i + k)));
+        (0..SAMPLED).step_by(4).map(entering).sum::<u32>() >= FEWEST_ENTERING
     }
 
     /// Adds rays to the groups that are open; whether that paid.

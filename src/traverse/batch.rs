@@ -70,6 +70,13 @@ pub(crate) fn batch<Q: PerRay>(isa: Isa, arena: &Arena, walk: Walk, rays: &[Ray]
     }
 }
 
+/// How many of four rays meet the scene's box.
+#[cfg(feature = "parallel")]
+#[inline(never)]
+pub(crate) fn entering(isa: Isa, arena: &Arena, rays: &[Ray; 4]) -> u32 {
+    dispatch!(isa, lanes => Quad::new(lanes, rays, &arena.grid).entering.count_ones())
+}
+
 struct Batch<'a> {
     isa: Isa,
     arena: &'a Arena,

@@ -25,6 +25,8 @@ use crate::kernel::{Exact, Test};
 use crate::lanes::{Isa, Lanes, WIDTH, dispatch};
 use crate::query::Query;
 use crate::ray::Ray;
+#[cfg(feature = "parallel")]
+pub(crate) use batch::entering;
 pub(crate) use batch::{PerRay, batch};
 use brute::Brute;
 use coherent::Coherent;

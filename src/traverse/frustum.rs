@@ -149,7 +149,9 @@ fn bounds<L: Lanes>(lanes: L, group: &Group<'_>, side: usize, x: f32) -> [f32; 2
     let (mut low, mut high) = (lanes.splat(f32::INFINITY), lanes.splat(f32::NEG_INFINITY));
     for packet in &group.packets[..group.packets()] {
         let u = lanes.mul_add(x, lanes.load(&packet.slope[side]), lanes.load(&packet.at[side]));
-        (low, high) = (lanes.min(low, u), lanes.max(high, u));
+        let none = lanes.less(lanes.load(&packet.span[1]), lanes.load(&packet.span[0]));
+        low = lanes.min(low, lanes.select(none, low, u));
+        high = lanes.max(high, lanes.select(none, high, u));
     }
     [least(&lanes.store(low)), greatest(&lanes.store(high))]
 }

@@ -9,7 +9,9 @@
 //! # Errors
 //! A line is computed in f64 and rounded to f32, which misplaces it by less than 2^-21.5 S where it is in the
 //! grid; evaluating it adds less than 2^-22 S. Voxels and boxes are built larger by four times that, see
-//! [`BRICK_MARGIN`](crate::dda::BRICK_MARGIN). Spans are enlarged by [`SLACK`].
+//! [`BRICK_MARGIN`](crate::dda::BRICK_MARGIN). Spans are enlarged by [`SLACK`]. They end where their ray leaves the
+//! box around the scene, which is enlarged by twice that: for what misplaces the line, and as much for rounding its
+//! distance from the box's sides. What dividing by the slope rounds is below 2^-22 S where it matters.
 
 use super::nearest::{Nearest, line};
 use crate::arena::Grid;
@@ -39,6 +41,9 @@ const FASTEST: i32 = 40;
 
 /// More than the rounding errors of a place along the main axis, in sizes S of the grid.
 pub(crate) const SLACK: f64 = 1.0 / (1u64 << 20) as f64;
+
+/// Slopes below this count as this, which moves a line in the grid by less than its place is rounded.
+const LEVEL: f32 = 1.0 / (1u32 << 30) as f32;
 
 /// The bound of [`RayLanes`] for scaled directions, whose largest component lies in [0.5, 1).
 pub(crate) const SCALED: f32 = 16.0;
@@ -182,21 +187,26 @@ impl<'a> Group<'a> {
             & finite(&out.dir[2])
             & lanes.less(lanes.load(&out.after), lanes.load(&out.nearest.t));
         let mut fit = ahead & lanes.bits(valid) & lanes.at_most8(lanes.abs8(x), near(main));
+        let slack = lanes.splat(self.slack);
+        let (mut enter, mut leave) = (lanes.splat(-1.0), lanes.splat(grid.dims[main] as f32 + 1.0));
         for side in 0..2 {
             let axis = others[side];
             let u = (widened(lanes, &out.origin[axis]) - lanes.splat8(grid.lo[axis])) * cells;
             let slope = widened(lanes, &out.dir[axis]) * inverse;
-            out.slope[side] = lanes.store(lanes.narrow(slope));
-            out.at[side] = lanes.store(lanes.narrow(u - slope * x));
+            let (at, line) = (lanes.narrow(u - slope * x), lanes.narrow(slope));
+            (out.slope[side], out.at[side]) = (lanes.store(line), lanes.store(at));
+            let begin = (grid.axes.near[axis] * grid.axes.per_length) as f32;
+            let [low, high] = [begin - 2.0 * self.slack, grid.dims[axis] as f32 - begin + 2.0 * self.slack];
+            let [from, to] = between(lanes, at, line, [low, high]);
+            (enter, leave) = (lanes.max(enter, from - slack), lanes.min(leave, to + slack));
             fit &= lanes.at_most8(lanes.abs8(slope), lanes.splat8(STEEPEST))
                 & lanes.at_most8(lanes.abs8(u), near(axis));
         }
         let from = lanes.narrow(x + widened(lanes, &out.after) * speed);
         let to = lanes.narrow(reach(lanes, x, widened(lanes, &out.nearest.t) * speed, self.rises));
         let (low, high) = if self.rises { (from, to) } else { (to, from) };
-        let slack = lanes.splat(self.slack);
-        out.span[0] = lanes.store(lanes.max(low - slack, lanes.splat(-1.0)));
-        out.span[1] = lanes.store(lanes.min(high + slack, lanes.splat(grid.dims[main] as f32 + 1.0)));
+        out.span[0] = lanes.store(lanes.max(low - slack, enter));
+        out.span[1] = lanes.store(lanes.min(high + slack, leave));
         for lane in self.len.saturating_sub(first).min(WIDTH)..WIDTH {
             out.span[0][lane] = f32::INFINITY;
             out.span[1][lane] = f32::NEG_INFINITY;
@@ -266,6 +276,15 @@ impl Packet {
         }
         self.t_max = lanes.store(above(lanes, t * widened(lanes, &self.scale)));
     }
+}
+
+/// The x between which lines at + slope * x are between two places.
+#[inline(always)]
+fn between<L: Lanes>(lanes: L, at: L::F32, slope: L::F32, [low, high]: [f32; 2]) -> [L::F32; 2] {
+    let level = lanes.less(lanes.abs(slope), lanes.splat(LEVEL));
+    let inverse = lanes.splat(1.0) / lanes.select(level, lanes.splat(LEVEL), slope);
+    let (a, b) = ((lanes.splat(low) - at) * inverse, (lanes.splat(high) - at) * inverse);
+    [lanes.min(a, b), lanes.max(a, b)]
 }
 
 #[inline(always)]

@@ -36,7 +36,7 @@ pub(super) fn tables(report: &Report) -> String {
     format!(
         "The plan relative to all parts (below 1 it saves):\n{}\n\n\
          The plan relative to one part the other way round, geometric means:\n{}\n\n\
-         Time to an image, build and rays of three kinds, relative to the best structure and quality:\n{}",
+         Time to an image, build and rays of three kinds as streams, relative to the best structure and quality:\n{}",
         whole(report),
         parts(report),
         choices(report)
@@ -129,11 +129,12 @@ pub(super) fn write(folder: &Folder, report: &Report) -> Result<(), Failure> {
 fn csv(scenes: &[Vec<Point>]) -> String {
     let mut text = "scene,triangles,variant,structure,bytes_a_triangle,build_ms".to_owned();
     KINDS.iter().for_each(|kind| text += &format!(",{kind}_ns_a_ray"));
+    KINDS.iter().for_each(|kind| text += &format!(",{kind}_stream_ns_a_ray"));
     text += ",clusters_a_ray,cache_lines_a_ray,instructions_a_ray\n";
     for p in scenes.iter().flatten() {
         text += &format!("\"{}\",{},{},\"{}\"", p.scene, p.triangles, p.variant, p.structure);
         text += &format!(",{},{}", p.bytes_a_triangle, p.image_ms(0.0));
-        for spread in &p.ns_a_ray {
+        for spread in p.ns_a_ray.iter().chain(&p.stream_ns_a_ray) {
             text += &spread.map_or(",".to_owned(), |spread| format!(",{}", spread.median));
         }
         let instructions = p.instructions_a_ray.map_or(String::new(), |count| count.to_string());

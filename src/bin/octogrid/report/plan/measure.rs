@@ -6,7 +6,7 @@ use octogrid::{Any, Closest, Counting, Counts, Query, Ray, Scene, SceneProfile};
 use serde::{Serialize, Serializer};
 
 use super::count;
-use super::rays::{Rays, trace};
+use super::rays::{Answers, Rays, trace, trace_stream};
 use super::variants::{Kind, Variant, variants};
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
@@ -23,8 +23,10 @@ pub(super) struct Point {
     pub(super) kind: Kind,
     pub(super) bytes_a_triangle: f64,
     pub(super) build_ms: Option<Spread>,
-    /// By kind of ray; none where there are no rays.
+    /// By kind of ray, asked one after the other; none where there are no rays.
     pub(super) ns_a_ray: [Option<Spread>; 3],
+    /// The same asked as a stream.
+    pub(super) stream_ns_a_ray: [Option<Spread>; 3],
     pub(super) clusters_a_ray: f64,
     pub(super) cache_lines_a_ray: f64,
     pub(super) instructions_a_ray: Option<f64>,
@@ -41,15 +43,15 @@ fn kind<S: Serializer>(kind: &Kind, serializer: S) -> Result<S::Ok, S::Error> {
 }
 
 impl Point {
-    /// Milliseconds from triangles to an image of `n` rays of each kind.
+    /// Milliseconds from triangles to an image of `n` rays of each kind, asked as streams, as `render` asks them.
     pub(super) fn image_ms(&self, n: f64) -> f64 {
-        let median = |spread: &Option<Spread>| spread.map_or(0.0, |spread| spread.median);
-        median(&self.build_ms) + n * self.ns() / 1e6
+        let build = self.build_ms.map_or(0.0, |spread| spread.median);
+        build + n * sum(&self.stream_ns_a_ray) / 1e6
     }
 
-    /// Nanoseconds of a ray of each kind together.
+    /// Nanoseconds of a ray of each kind together, asked one after the other.
     pub(super) fn ns(&self) -> f64 {
-        self.ns_a_ray.iter().flatten().map(|spread| spread.median).sum()
+        sum(&self.ns_a_ray)
     }
 
     /// Instructions a ray, or cluster tests and cache lines where they could not be counted.
@@ -58,11 +60,17 @@ impl Point {
     }
 }
 
+/// Of medians.
+fn sum(spreads: &[Option<Spread>; 3]) -> f64 {
+    spreads.iter().flatten().map(|spread| spread.median).sum()
+}
+
 /// What rounds gave.
 #[derive(Default)]
 struct Samples {
     build_ms: Vec<f64>,
     ns: [Vec<f64>; 3],
+    stream_ns: [Vec<f64>; 3],
 }
 
 /// Measures the variants of a scene; none of a scene without triangles.
@@ -80,6 +88,7 @@ pub(super) fn measure(loaded: &Loaded, rays: u32, rounds: u16) -> Result<Vec<Poi
         scenes.push(load::build(&loaded.model, &variant.options)?.0);
     }
     let image = Rays::new(loaded, &scenes[0], rays as usize);
+    let mut room = Answers::default();
     let mut samples: Vec<Samples> = variants.iter().map(|_| Samples::default()).collect();
     for round in 0..usize::from(rounds) {
         let mut answers = None;
@@ -87,10 +96,11 @@ pub(super) fn measure(loaded: &Loaded, rays: u32, rounds: u16) -> Result<Vec<Poi
             let at = (round + turn) % variants.len();
             let (scene, ms) = load::build(&loaded.model, &variants[at].options)?;
             samples[at].build_ms.push(ms);
-            let answer = samples[at].trace(&scene, &image);
-            if *answers.get_or_insert(answer) != answer {
-                let name = &variants[at].name;
-                return Err(Failure::Expected(format!("{}: {name} disagrees on a hit", loaded.name)));
+            for answer in samples[at].trace(&scene, &image, &mut room) {
+                if *answers.get_or_insert(answer) != answer {
+                    let name = &variants[at].name;
+                    return Err(Failure::Expected(format!("{}: {name} disagrees on a hit", loaded.name)));
+                }
             }
         }
     }
@@ -103,18 +113,26 @@ pub(super) fn measure(loaded: &Loaded, rays: u32, rounds: u16) -> Result<Vec<Poi
 }
 
 impl Samples {
-    /// Traces all rays; a number that depends on all answers.
-    fn trace(&mut self, scene: &Scene, image: &Rays) -> u64 {
-        let mut sum = 0u64;
-        for (kind, rays) in image.kinds().enumerate() {
-            let start = Instant::now();
-            sum = sum.wrapping_mul(31).wrapping_add(trace(scene, kind, rays));
-            if !rays.is_empty() {
-                self.ns[kind].push(start.elapsed().as_secs_f64() * 1e9 / rays.len() as f64);
-            }
+    /// Traces all rays, one after the other and as streams; of either a number that depends on all answers.
+    fn trace(&mut self, scene: &Scene, image: &Rays, room: &mut Answers) -> [u64; 2] {
+        let mut sums = [0u64; 2];
+        for (kind, rays) in image.kinds().enumerate().filter(|(_, rays)| !rays.is_empty()) {
+            let (single, ns) = timed(rays.len(), || trace(scene, kind, rays));
+            self.ns[kind].push(ns);
+            let (stream, ns) = timed(rays.len(), || trace_stream(scene, kind, rays, room));
+            self.stream_ns[kind].push(ns);
+            sums =
+                [(sums[0], single), (sums[1], stream)].map(|(sum, n)| sum.wrapping_mul(31).wrapping_add(n));
         }
-        sum
+        sums
     }
+}
+
+/// What `trace` gives, and nanoseconds that it takes for each of `n` rays.
+fn timed(n: usize, trace: impl FnOnce() -> u64) -> (u64, f64) {
+    let start = Instant::now();
+    let answer = trace();
+    (answer, start.elapsed().as_secs_f64() * 1e9 / n as f64)
 }
 
 fn point(
@@ -136,6 +154,7 @@ fn point(
         bytes_a_triangle: load::bytes_per_triangle(scene),
         build_ms: Spread::of(&samples.build_ms),
         ns_a_ray: samples.ns.each_ref().map(|ns| Spread::of(ns)),
+        stream_ns_a_ray: samples.stream_ns.each_ref().map(|ns| Spread::of(ns)),
         clusters_a_ray: a_ray(counts.clusters),
         cache_lines_a_ray: a_ray(counts.cache_lines),
         instructions_a_ray: instructions.map(a_ray),

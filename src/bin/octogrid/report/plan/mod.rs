@@ -26,7 +26,8 @@ use crate::{pool, table};
 ///
 /// Builds each scene as its plan says, fast, with all parts, with each part the other way round, and as every
 /// structure with default parameters, and traces rays of an image: from the camera, to the lights, and from
-/// where they meet the scene any way. All in turns on one thread. Instructions are counted under valgrind,
+/// where they meet the scene any way. One after the other, which is what parts are judged by, and as streams,
+/// which is how an image is rendered. All in turns on one thread. Instructions are counted under valgrind,
 /// where there is one; else the tables show cluster tests and cache lines. Writes report.json, report.csv and
 /// savings.svg.
 #[derive(Debug, clap::Args)]

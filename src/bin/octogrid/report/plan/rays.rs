@@ -1,7 +1,7 @@
 //! The rays of an image: through its pixels, from what they meet to the lights, and from there any way.
 
 use glam::DVec3;
-use octogrid::{Ray, Rng, Scene};
+use octogrid::{Hit, Ray, Rng, Scene};
 
 use crate::load::Loaded;
 use crate::shade::Shading;
@@ -9,6 +9,9 @@ use crate::{survey, viewpoint};
 
 /// The kinds of rays.
 pub(super) const KINDS: [&str; 3] = ["primary", "shadow", "diffuse"];
+
+/// The kind of which it is asked whether there is any hit.
+const SHADOW: usize = 1;
 
 /// Rays of each kind.
 pub(super) struct Rays([Vec<Ray>; 3]);
@@ -54,12 +57,36 @@ impl Rays {
     }
 }
 
-/// Asks for the closest hits of rays of one kind, or whether there is any if these go to lights; a number that
-/// depends on all answers.
+/// Asks for the closest hits of rays of one kind, or whether there is any if these go to lights, one after the other;
+/// a number that depends on all answers.
 pub(super) fn trace(scene: &Scene, kind: usize, rays: &[Ray]) -> u64 {
     let answer = |ray: &Ray| match kind {
-        1 => u64::from(scene.occluded(ray)),
-        _ => u64::from(scene.closest(ray).t.to_bits()),
+        SHADOW => u64::from(scene.occluded(ray)),
+        _ => bits(&scene.closest(ray)),
     };
     rays.iter().map(answer).fold(0, u64::wrapping_add)
+}
+
+/// Room for the answers to a stream.
+#[derive(Default)]
+pub(super) struct Answers {
+    hits: Vec<Hit>,
+    occluded: Vec<bool>,
+}
+
+/// The same as a stream, the way an image is rendered.
+pub(super) fn trace_stream(scene: &Scene, kind: usize, rays: &[Ray], answers: &mut Answers) -> u64 {
+    if kind == SHADOW {
+        answers.occluded.resize(rays.len(), false);
+        scene.occluded_stream(rays, &mut answers.occluded);
+        answers.occluded.iter().copied().map(u64::from).fold(0, u64::wrapping_add)
+    } else {
+        answers.hits.resize(rays.len(), Hit::MISS);
+        scene.closest_stream(rays, &mut answers.hits);
+        answers.hits.iter().map(bits).fold(0, u64::wrapping_add)
+    }
+}
+
+fn bits(hit: &Hit) -> u64 {
+    u64::from(hit.t.to_bits())
 }

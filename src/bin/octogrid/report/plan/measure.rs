@@ -6,8 +6,9 @@ use octogrid::{Any, Closest, Counting, Counts, Query, Ray, Scene, SceneProfile};
 use serde::{Serialize, Serializer};
 
 use super::count;
-use super::rays::{Answers, Rays, trace, trace_stream};
+use super::rays::{Rays, SHADOW, trace, trace_stream};
 use super::variants::{Kind, Variant, variants};
+use crate::answer::Answer;
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
 use crate::report::statistics::Spread;
@@ -60,7 +61,7 @@ impl Point {
     }
 }
 
-/// Of medians.
+/// The sum of the medians.
 fn sum(spreads: &[Option<Spread>; 3]) -> f64 {
     spreads.iter().flatten().map(|spread| spread.median).sum()
 }
@@ -88,7 +89,7 @@ pub(super) fn measure(loaded: &Loaded, rays: u32, rounds: u16) -> Result<Vec<Poi
         scenes.push(load::build(&loaded.model, &variant.options)?.0);
     }
     let image = Rays::new(loaded, &scenes[0], rays as usize);
-    let mut room = Answers::default();
+    let mut room = image.answers();
     let mut samples: Vec<Samples> = variants.iter().map(|_| Samples::default()).collect();
     for round in 0..usize::from(rounds) {
         let mut answers = None;
@@ -114,12 +115,12 @@ pub(super) fn measure(loaded: &Loaded, rays: u32, rounds: u16) -> Result<Vec<Poi
 
 impl Samples {
     /// Traces all rays, one after the other and as streams; of either a number that depends on all answers.
-    fn trace(&mut self, scene: &Scene, image: &Rays, room: &mut Answers) -> [u64; 2] {
+    fn trace(&mut self, scene: &Scene, image: &Rays, room: &mut [Answer]) -> [u64; 2] {
         let mut sums = [0u64; 2];
         for (kind, rays) in image.kinds().enumerate().filter(|(_, rays)| !rays.is_empty()) {
             let (single, ns) = timed(rays.len(), || trace(scene, kind, rays));
             self.ns[kind].push(ns);
-            let (stream, ns) = timed(rays.len(), || trace_stream(scene, kind, rays, room));
+            let (stream, ns) = timed(rays.len(), || trace_stream(scene, rays, &mut room[kind]));
             self.stream_ns[kind].push(ns);
             sums =
                 [(sums[0], single), (sums[1], stream)].map(|(sum, n)| sum.wrapping_mul(31).wrapping_add(n));
@@ -172,7 +173,7 @@ fn work(scene: &Scene, image: &Rays) -> Counts {
     for (kind, rays) in image.kinds().enumerate() {
         for ray in rays {
             counts += match kind {
-                1 => counted(scene, ray, Any::new(ray.t_max)),
+                SHADOW => counted(scene, ray, Any::new(ray.t_max)),
                 _ => counted(scene, ray, Closest::new(ray.t_max)),
             };
         }

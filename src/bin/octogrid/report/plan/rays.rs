@@ -1,8 +1,9 @@
 //! The rays of an image: through its pixels, from what they meet to the lights, and from there any way.
 
 use glam::DVec3;
-use octogrid::{Hit, Ray, Rng, Scene};
+use octogrid::{Hit, HitLists, Ray, Rng, Scene};
 
+use crate::answer::Answer;
 use crate::load::Loaded;
 use crate::shade::Shading;
 use crate::{survey, viewpoint};
@@ -11,7 +12,7 @@ use crate::{survey, viewpoint};
 pub(super) const KINDS: [&str; 3] = ["primary", "shadow", "diffuse"];
 
 /// The kind of which it is asked whether there is any hit.
-const SHADOW: usize = 1;
+pub(super) const SHADOW: usize = 1;
 
 /// Rays of each kind.
 pub(super) struct Rays([Vec<Ray>; 3]);
@@ -51,6 +52,15 @@ impl Rays {
         self.0.iter().map(Vec::as_slice)
     }
 
+    /// Room for the answers to each kind.
+    pub(super) fn answers(&self) -> Vec<Answer> {
+        let room = |(kind, rays): (usize, &[Ray])| match kind {
+            SHADOW => Answer::any(rays.len()),
+            _ => Answer::closest(rays.len()),
+        };
+        self.kinds().enumerate().map(room).collect()
+    }
+
     /// All of them.
     pub(super) fn len(&self) -> usize {
         self.kinds().map(<[Ray]>::len).sum()
@@ -67,23 +77,14 @@ pub(super) fn trace(scene: &Scene, kind: usize, rays: &[Ray]) -> u64 {
     rays.iter().map(answer).fold(0, u64::wrapping_add)
 }
 
-/// Room for the answers to a stream.
-#[derive(Default)]
-pub(super) struct Answers {
-    hits: Vec<Hit>,
-    occluded: Vec<bool>,
-}
-
 /// The same as a stream, the way an image is rendered.
-pub(super) fn trace_stream(scene: &Scene, kind: usize, rays: &[Ray], answers: &mut Answers) -> u64 {
-    if kind == SHADOW {
-        answers.occluded.resize(rays.len(), false);
-        scene.occluded_stream(rays, &mut answers.occluded);
-        answers.occluded.iter().copied().map(u64::from).fold(0, u64::wrapping_add)
-    } else {
-        answers.hits.resize(rays.len(), Hit::MISS);
-        scene.closest_stream(rays, &mut answers.hits);
-        answers.hits.iter().map(bits).fold(0, u64::wrapping_add)
+pub(super) fn trace_stream(scene: &Scene, rays: &[Ray], answer: &mut Answer) -> u64 {
+    answer.ask(scene, rays);
+    match answer {
+        Answer::Any(occluded) => occluded.iter().copied().map(u64::from).fold(0, u64::wrapping_add),
+        Answer::Closest(hits) | Answer::All(HitLists { hits, .. }) => {
+            hits.iter().map(bits).fold(0, u64::wrapping_add)
+        }
     }
 }
 

@@ -15,7 +15,7 @@ use glam::Vec4;
 
 use crate::aabb::Aabb;
 use crate::cluster::Cluster;
-use crate::lanes::WIDTH;
+use crate::lanes::WIDE;
 
 /// A voxel in 32 bits: empty, a leaf, or divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -102,19 +102,19 @@ pub(crate) struct Brick {
     pub(crate) padding: u32,
 }
 
-/// Eight cluster boxes, clipped to the voxel that they lie in.
+/// Up to sixteen cluster boxes, clipped to the voxel that they lie in, each operand in one cache line.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-#[repr(C, align(32))]
+#[repr(C, align(64))]
 pub(crate) struct BoxGroup {
     /// Lower and upper corners by axis and lane, relative to the grid's lower corner, in cells of the
     /// top grid. Lanes without a cluster hold a box at infinity, which no path reaches.
-    pub(crate) planes: [[[f32; WIDTH]; 3]; 2],
+    pub(crate) planes: [[[f32; WIDE]; 3]; 2],
     /// The clusters. The first carries whether the group is the last of its leaf.
-    pub(crate) clusters: [Reference; WIDTH],
+    pub(crate) clusters: [Reference; WIDE],
 }
 
 const _: () = assert!(size_of::<VoxelWord>() == 4 && size_of::<Reference>() == 4);
-const _: () = assert!(size_of::<Brick>() == 48 && size_of::<BoxGroup>() == 224);
+const _: () = assert!(size_of::<Brick>() == 48 && size_of::<BoxGroup>() == 448);
 
 /// The uniform grid on top: cubic voxels.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,6 +9,7 @@
 mod double;
 #[cfg(test)]
 mod portable;
+mod sixteen;
 mod vec3;
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
@@ -17,13 +18,17 @@ pub(crate) use double::Doubles;
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f64x4, mask32x8, mask64x4};
 #[cfg(test)]
 pub(crate) use portable::Portable;
+pub(crate) use sixteen::Sixteen;
 pub(crate) use vec3::{Once, Rounding, Twice, Vec3Lanes, cross, dot, minus, splat};
 
 /// Lanes in one operation.
 pub(crate) const WIDTH: usize = 8;
 
+/// Lanes in one operation on boxes.
+pub(crate) const WIDE: usize = 16;
+
 /// Eight f32 or four f64 lanes: the operations that the kernels need, and no more.
-pub(crate) trait Lanes: Copy {
+pub(crate) trait Lanes: Sixteen {
     /// Eight values.
     type F32: Copy
         + Add<Output = Self::F32>

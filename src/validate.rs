@@ -6,7 +6,7 @@ use glam::Vec4;
 
 use crate::arena::{Arena, BRICK_LEVELS, Form, Grid, LIST_LEVELS, Voxel, VoxelWord};
 use crate::cluster::Cluster;
-use crate::lanes::WIDTH;
+use crate::lanes::{WIDE, WIDTH};
 
 /// What a structure is made of. Prints as lines of a name and a value.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -279,9 +279,9 @@ impl Check<'_> {
             meet(&mut self.entries, index, "box group")?;
             let group = &self.arena.groups[index];
             let last = group.clusters[0].is_last();
-            let full = (0..WIDTH).take_while(|&lane| group.planes[0][0][lane] != f32::INFINITY).count();
-            require!(full > 0 && (last || full == WIDTH), "box group {index} has gaps");
-            for lane in 0..WIDTH {
+            let full = (0..WIDE).take_while(|&lane| group.planes[0][0][lane] != f32::INFINITY).count();
+            require!(full > 0 && (last || full == WIDE), "box group {index} has gaps");
+            for lane in 0..WIDE {
                 require!(group.clusters[lane].is_last() == last, "the end of box group {index}");
                 let [lo, hi] = group.planes.map(|side| side.map(|axis| axis[lane]));
                 let empty = (lo, hi) == ([f32::INFINITY; 3], [f32::INFINITY; 3]);

@@ -97,7 +97,7 @@ fn analyze_tells_what_is_left_out_and_why() {
     let folder = Folder::new();
     let run = folder.run(&["analyze", "cube"]);
     for part in
-        ["Plan: brute force", "voxels     left out  12 triangles: up to 40", "with all parts 99.0 bytes"]
+        ["Plan: brute force", "voxels     left out  12 triangles: up to 40", "with all parts 117.7 bytes"]
     {
         assert!(run.stdout.contains(part), "{part} in {}", run.stdout);
     }

@@ -23,7 +23,7 @@ use super::voxel::{Cuboid, Item, VoxelView, Voxels, scatter};
 use crate::aabb::Aabb;
 use crate::arena::{BoxGroup, Brick, Form, Grid, Reference, VoxelWord};
 use crate::cluster::Cluster;
-use crate::lanes::{Lanes, WIDTH};
+use crate::lanes::{Lanes, WIDE};
 
 /// A brick whose clusters are in this many of its parts or more on average, as long slivers are, takes more memory and
 /// time to build than it saves.
@@ -124,7 +124,7 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
     }
 
     fn may_divide(&self, cube: Cuboid, depth: u32) -> bool {
-        let references = self.piece.references.len() + WIDTH * self.piece.groups.len();
+        let references = self.piece.references.len() + WIDE * self.piece.groups.len();
         depth < self.space.limits.levels
             && cube.longest() / f64::from(self.form.divisions()) >= self.least_side
             && references < self.references
@@ -310,8 +310,8 @@ impl<'a, L: Lanes, P: Policy> Divider<'a, L, P> {
             }
             Form::Bricks => {
                 let word = VoxelWord::leaf(self.piece.groups.len());
-                let last = items.len().div_ceil(WIDTH) - 1;
-                for (i, items) in items.chunks(WIDTH).enumerate() {
+                let last = items.len().div_ceil(WIDE) - 1;
+                for (i, items) in items.chunks(WIDE).enumerate() {
                     self.piece.groups.push(group(items, self.space.grid, self.margin, i == last));
                 }
                 word
@@ -364,10 +364,10 @@ fn in_cells(b: &Aabb, grid: &Grid, margin: f64) -> [[f32; 3]; 2] {
     [lo, hi]
 }
 
-/// The boxes of up to eight items, enlarged by the margin, in cells of the grid.
+/// The boxes of up to sixteen items, enlarged by the margin, in cells of the grid.
 fn group(items: &[Item], grid: &Grid, margin: f64, last: bool) -> BoxGroup {
     let mut group =
-        BoxGroup { planes: [[[f32::INFINITY; WIDTH]; 3]; 2], clusters: [Reference::new(0, last); WIDTH] };
+        BoxGroup { planes: [[[f32::INFINITY; WIDE]; 3]; 2], clusters: [Reference::new(0, last); WIDE] };
     for (lane, item) in items.iter().enumerate() {
         let corners = in_cells(&ordered(&item.bounds), grid, margin);
         for axis in 0..3 {

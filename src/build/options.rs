@@ -49,7 +49,7 @@ pub struct HybridParams {
     pub density: f32,
     /// The most levels of bricks below the top grid; 0 leaves the top grid alone.
     pub levels: u32,
-    /// Cost of testing a group of eight cluster boxes.
+    /// Cost of testing eight cluster boxes.
     pub group_cost: f32,
     /// Cost of entering a brick.
     pub brick_cost: f32,

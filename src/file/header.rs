@@ -56,9 +56,9 @@ impl Header {
     /// A byte that no text has, the name, and a line end that a transfer as text would change.
     pub(crate) const MAGIC: [u8; 8] = *b"\x89ogrid\r\n";
     /// The version of the format. Any change of a type in the arena needs another one.
-    pub(crate) const VERSION: u32 = 2;
+    pub(crate) const VERSION: u32 = 3;
     /// The bytes of an item of each section.
-    pub(crate) const ITEM_BYTES: [usize; 5] = [320, 4, 4, 48, 224];
+    pub(crate) const ITEM_BYTES: [usize; 5] = [320, 4, 4, 48, 448];
 
     pub(super) fn new(structure: &Structure, triangles: usize, arena: &Arena, sections: [&[u8]; 5]) -> Self {
         debug_assert_eq!(form(structure), arena.form);

@@ -9,7 +9,7 @@ use crate::aabb::Aabb;
 use crate::arena::{Arena, Form, Voxel, VoxelWord};
 use crate::build::{self, Structure};
 use crate::dda::{BRICK_MARGIN, LIST_MARGIN};
-use crate::lanes::WIDTH;
+use crate::lanes::WIDE;
 use crate::mesh::TriMesh;
 use crate::ray::Ray;
 use crate::traverse::Visit;
@@ -154,7 +154,7 @@ impl Subject {
         let groups = &self.arena.groups[first..];
         let last = groups.iter().position(|group| group.clusters[0].is_last()).unwrap();
         for group in &groups[..=last] {
-            for lane in (0..WIDTH).filter(|&lane| group.planes[0][0][lane] != f32::INFINITY) {
+            for lane in (0..WIDE).filter(|&lane| group.planes[0][0][lane] != f32::INFINITY) {
                 leaf.clusters.push(group.clusters[lane].cluster());
                 leaf.boxes.push(group.planes.map(|side| side.map(|axis| axis[lane])));
             }

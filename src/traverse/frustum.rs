@@ -114,20 +114,20 @@ impl Frustum {
     /// The boxes that it meets, as bits.
     #[inline(always)]
     pub(crate) fn boxes<L: Lanes>(&self, lanes: L, group: &BoxGroup) -> u32 {
-        let plane = |side: usize, axis: usize| lanes.load(&group.planes[side][axis]);
-        let a = lanes.max(plane(0, self.main), lanes.splat(self.span[0]));
-        let b = lanes.min(plane(1, self.main), lanes.splat(self.span[1]));
-        let mut apart = lanes.less(b, a);
+        let plane = |side: usize, axis: usize| lanes.load16(&group.planes[side][axis]);
+        let a = lanes.max16(plane(0, self.main), lanes.splat16(self.span[0]));
+        let b = lanes.min16(plane(1, self.main), lanes.splat16(self.span[1]));
+        let mut apart = lanes.less16(b, a);
         for side in 0..2 {
-            let line = |k: usize, x: L::F32| {
-                lanes.mul_add(x, lanes.splat(self.slope[side][k]), lanes.splat(self.at[side][k]))
+            let line = |k: usize, x: L::F32x16| {
+                lanes.mul_add16(x, lanes.splat16(self.slope[side][k]), lanes.splat16(self.at[side][k]))
             };
-            let low = lanes.min(line(0, a), line(0, b));
-            let high = lanes.max(line(1, a), line(1, b));
+            let low = lanes.min16(line(0, a), line(0, b));
+            let high = lanes.max16(line(1, a), line(1, b));
             let axis = self.others[side];
-            apart = apart | lanes.less(plane(1, axis), low) | lanes.less(high, plane(0, axis));
+            apart = apart | lanes.less16(plane(1, axis), low) | lanes.less16(high, plane(0, axis));
         }
-        !lanes.bits(apart) & 0xff
+        !lanes.bits16(apart) & 0xffff
     }
 }
 

@@ -17,7 +17,7 @@ use super::{Visit, Walker};
 use crate::arena::{Arena, BRICK_LEVELS, BoxGroup, Grid, Voxel, VoxelWord};
 use crate::dda::{Clock, Dda, Limit, Path, Quad, Steps};
 use crate::filter::above;
-use crate::lanes::{Lanes, Vec3Lanes, axes, splat};
+use crate::lanes::{Lanes, axes};
 
 /// The walk, with bricks or through the top grid alone.
 pub(crate) struct Hybrid<const BRICKS: bool>;
@@ -78,6 +78,15 @@ fn rounded<L: Lanes>(lanes: L, x: L::F64) -> [f32; 3] {
     axes(
         #[inline(always)]
         |axis| x[axis] as f32,
+    )
+}
+
+/// Each value in all lanes.
+#[inline(always)]
+fn splat<L: Lanes>(lanes: L, x: [f32; 3]) -> [L::F32x16; 3] {
+    axes(
+        #[inline(always)]
+        |axis| lanes.splat16(x[axis]),
     )
 }
 
@@ -142,8 +151,8 @@ struct Cells<'a, L: Lanes, V> {
     /// When the path leaves the grid, rounded up.
     end: f32,
     /// As in [`Start`].
-    slope: Vec3Lanes<L>,
-    delay: Vec3Lanes<L>,
+    slope: [L::F32x16; 3],
+    delay: [L::F32x16; 3],
     /// The same for bricks.
     line: Line,
     /// The sides of boxes that the path enters and leaves by.
@@ -166,7 +175,7 @@ impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
             |axis| (!octant >> axis & 1) as usize,
         );
         let line = Line::new(slope, delay, octant);
-        let (slope, delay) = (splat(lanes, slope.into()), splat(lanes, delay.into()));
+        let (slope, delay) = (splat(lanes, slope), splat(lanes, delay));
         Self { lanes, arena, octant, clock, visit, limit, last, end, slope, delay, line, near, far }
     }
 
@@ -251,7 +260,7 @@ impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
                 met &= met - 1;
                 self.visit.only(group.clusters[lane].cluster())?;
                 if self.narrow() {
-                    met &= self.overlapping(start, self.lanes.splat(self.last));
+                    met &= self.overlapping(start, self.lanes.splat16(self.last));
                 }
             }
             if group.clusters[0].is_last() {
@@ -260,23 +269,24 @@ impl<'a, L: Lanes, V: Visit> Cells<'a, L, V> {
         }
     }
 
-    /// When the path enters and leaves eight boxes, from time 0 to the limit.
+    /// When the path enters and leaves sixteen boxes, from time 0 to the limit.
     #[inline(always)]
-    fn boxes(&self, group: &BoxGroup) -> (L::F32, L::F32) {
+    fn boxes(&self, group: &BoxGroup) -> (L::F32x16, L::F32x16) {
         let lanes = self.lanes;
-        let (mut start, mut end) = (lanes.splat(0.0), lanes.splat(self.last));
+        let (mut start, mut end) = (lanes.splat16(0.0), lanes.splat16(self.last));
         for axis in 0..3 {
             let (near, far) = (self.near[axis] & 1, self.far[axis] & 1);
-            let (near, far) = (lanes.load(&group.planes[near][axis]), lanes.load(&group.planes[far][axis]));
-            start = lanes.max(start, lanes.mul_add(near, self.slope[axis], self.delay[axis]));
-            end = lanes.min(end, lanes.mul_add(far, self.slope[axis], self.delay[axis]));
+            let (near, far) =
+                (lanes.load16(&group.planes[near][axis]), lanes.load16(&group.planes[far][axis]));
+            start = lanes.max16(start, lanes.mul_add16(near, self.slope[axis], self.delay[axis]));
+            end = lanes.min16(end, lanes.mul_add16(far, self.slope[axis], self.delay[axis]));
         }
         (start, end)
     }
 
     /// The lanes whose interval is not empty, as bits.
     #[inline(always)]
-    fn overlapping(&self, start: L::F32, end: L::F32) -> u32 {
-        !self.lanes.bits(self.lanes.less(end, start)) & 0xff
+    fn overlapping(&self, start: L::F32x16, end: L::F32x16) -> u32 {
+        !self.lanes.bits16(self.lanes.less16(end, start)) & 0xffff
     }
 }

@@ -71,7 +71,7 @@ fn files_that_do_not_fit_are_refused() {
     for (file, said) in [
         ("short", "ends after 300 bytes, in its clusters"),
         ("damaged", "damaged in its clusters"),
-        ("newer", "version 3"),
+        ("newer", "version 4"),
         ("text", "no saved scene"),
         ("none", "none.ogrid: No such file"),
     ] {

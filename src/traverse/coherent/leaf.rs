@@ -1,6 +1,6 @@
-//! The clusters of a leaf against a group of rays, in four steps, each on eight lanes:
+//! The clusters of a leaf against a group of rays, in four steps:
 //!
-//! 1. eight cluster boxes against the frustum,
+//! 1. sixteen cluster boxes against the frustum,
 //! 2. one box against eight rays, packet by packet,
 //! 3. the cluster's eight triangles against the [`Bundle`](crate::bundle::Bundle) of all lines,
 //! 4. one triangle against eight rays ([`Prepared`]).

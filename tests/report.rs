@@ -199,7 +199,7 @@ fn the_plan_is_measured_against_everything() {
     let small = ["--rays", "64", "--rounds", "2", "--out", "p"];
     let run = folder.run(&[&["report", "plan", "cube", "torus", "empty"], &small[..]].concat());
     assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""));
-    for part in ["brute force", "hybrid[0.4,0]", "left out", "geometric mean", "10^6 rays"] {
+    for part in ["brute force", "hybrid[0.2,0]", "left out", "geometric mean", "10^6 rays"] {
         assert!(run.stdout.contains(part), "{part} in {}", run.stdout);
     }
     let json = std::fs::read(folder.path("p/report.json")).unwrap();

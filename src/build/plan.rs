@@ -10,7 +10,7 @@ use super::profile::SceneProfile;
 pub enum Part {
     /// Voxels at all; without them every triangle is tested for every ray ([`Structure::Brute`]).
     Voxels,
-    /// A top grid of four times as many voxels.
+    /// A top grid of twice as many voxels.
     FineGrid,
     /// Bricks that divide the voxels of the top grid, and the code that walks through them.
     Bricks,
@@ -169,7 +169,7 @@ impl Plan {
         }
         let HybridParams { density, levels, .. } = HybridParams::DEFAULT;
         Structure::Hybrid(HybridParams {
-            density: if self.keeps(Part::FineGrid) { 4.0 * density } else { density },
+            density: if self.keeps(Part::FineGrid) { 2.0 * density } else { density },
             levels: if self.keeps(Part::Bricks) { levels } else { 0 },
             ..HybridParams::DEFAULT
         })

@@ -147,13 +147,14 @@ impl Policy for Hybrid {
         Form::Bricks
     }
 
-    /// A leaf of one group is as cheap as a leaf gets, and what costs little more than a brick does not repay the
+    /// A leaf of eight clusters is as cheap as a leaf gets, and what costs little more than a brick does not repay the
     /// trial.
     fn divides(&self, voxel: &VoxelView<'_>, leaf_cost: f32) -> bool {
         voxel.items.len() > crate::lanes::WIDTH && leaf_cost > 4.0 * self.params.brick_cost
     }
 
-    /// A ray through a voxel meets a cluster's box with a chance that is the ratio of the areas.
+    /// A ray through a voxel meets a cluster's box with a chance that is the ratio of the areas. Boxes are counted by
+    /// eight, though sixteen are tested at once: leaves get too long otherwise.
     fn leaf_cost(&self, voxel: &VoxelView<'_>) -> f32 {
         let groups = voxel.items.len().div_ceil(crate::lanes::WIDTH) as f32;
         let area = voxel.bounds.half_area();

@@ -15,7 +15,9 @@ mod vec3;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
 pub(crate) use double::Doubles;
-use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f64x4, mask32x8, mask64x4};
+use fearless_simd::{
+    Level, Select, Simd, SimdBase, SimdCombine, SimdFloat, SimdMask, f32x8, f32x16, f64x4, mask32x8, mask64x4,
+};
 #[cfg(test)]
 pub(crate) use portable::Portable;
 pub(crate) use sixteen::Sixteen;
@@ -81,6 +83,8 @@ pub(crate) trait Lanes: Sixteen {
     fn select(self, mask: Self::Mask, a: Self::F32, b: Self::F32) -> Self::F32;
     /// The values a0 b0 a1 b1 and so on, in two halves.
     fn interleave(self, a: Self::F32, b: Self::F32) -> [Self::F32; 2];
+    /// The values of `a`, then those of `b`.
+    fn join(self, a: Self::F32, b: Self::F32) -> Self::F32x16;
 
     /// Four f64 values.
     type F64: Copy
@@ -235,6 +239,10 @@ impl<S: Simd> Lanes for Dispatched<S> {
     fn interleave(self, a: f32x8<S>, b: f32x8<S>) -> [f32x8<S>; 2] {
         let (low, high) = self.0.interleave_f32x8(a, b);
         [low, high]
+    }
+    #[inline(always)]
+    fn join(self, a: f32x8<S>, b: f32x8<S>) -> f32x16<S> {
+        a.combine(b)
     }
 
     type F64 = f64x4<S>;

@@ -74,6 +74,11 @@ impl Lanes for Portable {
             wide::f32x8::from([c[0], d[0], c[1], d[1], c[2], d[2], c[3], d[3]])
         })
     }
+    #[inline(always)]
+    fn join(self, a: wide::f32x8, b: wide::f32x8) -> wide::f32x16 {
+        let (a, b) = (a.to_array(), b.to_array());
+        wide::f32x16::from(std::array::from_fn(|i| if i < WIDTH { a[i] } else { b[i - WIDTH] }))
+    }
 
     type F64 = wide::f64x4;
     type Mask4 = wide::f64x4;

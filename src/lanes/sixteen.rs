@@ -113,6 +113,7 @@ mod tests {
         assert_eq!(bits(one, lanes.max16(a, one)), 0xfc00);
         assert_eq!(bits(lanes.mul_add16(a, a, one), lanes.splat16(17.5)), 0x1ff0);
         assert_eq!(bits(lanes.splat16(f32::NAN), a), 0);
+        assert_eq!(bits(lanes.join(lanes.splat(0.5), lanes.splat(2.0)), one), 0x00ff);
     }
 
     #[test]

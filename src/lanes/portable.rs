@@ -1,6 +1,6 @@
 //! Lanes over `wide`, as a reference for tests: compiled for one instruction set, not dispatched.
 
-use super::{Lanes, WIDTH};
+use super::{Lanes, Sixteen, WIDE, WIDTH};
 
 #[derive(Clone, Copy)]
 pub(crate) struct Portable;
@@ -125,6 +125,40 @@ impl Lanes for Portable {
     }
     #[inline(always)]
     fn bits4(self, mask: wide::f64x4) -> u32 {
+        mask.to_bitmask()
+    }
+}
+
+impl Sixteen for Portable {
+    type F32x16 = wide::f32x16;
+    type Mask16 = wide::f32x16;
+
+    #[inline(always)]
+    fn splat16(self, x: f32) -> wide::f32x16 {
+        wide::f32x16::splat(x)
+    }
+    #[inline(always)]
+    fn load16(self, x: &[f32; WIDE]) -> wide::f32x16 {
+        wide::f32x16::from(*x)
+    }
+    #[inline(always)]
+    fn mul_add16(self, a: wide::f32x16, b: wide::f32x16, c: wide::f32x16) -> wide::f32x16 {
+        a.mul_add(b, c)
+    }
+    #[inline(always)]
+    fn min16(self, a: wide::f32x16, b: wide::f32x16) -> wide::f32x16 {
+        a.fast_min(b)
+    }
+    #[inline(always)]
+    fn max16(self, a: wide::f32x16, b: wide::f32x16) -> wide::f32x16 {
+        a.fast_max(b)
+    }
+    #[inline(always)]
+    fn less16(self, a: wide::f32x16, b: wide::f32x16) -> wide::f32x16 {
+        a.simd_lt(b)
+    }
+    #[inline(always)]
+    fn bits16(self, mask: wide::f32x16) -> u32 {
         mask.to_bitmask()
     }
 }

@@ -64,41 +64,6 @@ impl<S: Simd> Sixteen for Dispatched<S> {
 }
 
 #[cfg(test)]
-impl Sixteen for super::Portable {
-    type F32x16 = wide::f32x16;
-    type Mask16 = wide::f32x16;
-
-    #[inline(always)]
-    fn splat16(self, x: f32) -> wide::f32x16 {
-        wide::f32x16::splat(x)
-    }
-    #[inline(always)]
-    fn load16(self, x: &[f32; WIDE]) -> wide::f32x16 {
-        wide::f32x16::from(*x)
-    }
-    #[inline(always)]
-    fn mul_add16(self, a: wide::f32x16, b: wide::f32x16, c: wide::f32x16) -> wide::f32x16 {
-        a.mul_add(b, c)
-    }
-    #[inline(always)]
-    fn min16(self, a: wide::f32x16, b: wide::f32x16) -> wide::f32x16 {
-        a.fast_min(b)
-    }
-    #[inline(always)]
-    fn max16(self, a: wide::f32x16, b: wide::f32x16) -> wide::f32x16 {
-        a.fast_max(b)
-    }
-    #[inline(always)]
-    fn less16(self, a: wide::f32x16, b: wide::f32x16) -> wide::f32x16 {
-        a.simd_lt(b)
-    }
-    #[inline(always)]
-    fn bits16(self, mask: wide::f32x16) -> u32 {
-        mask.to_bitmask()
-    }
-}
-
-#[cfg(test)]
 mod tests {
     use super::*;
     use crate::lanes::{Isa, Lanes, Portable, dispatch};
